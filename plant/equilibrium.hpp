@@ -1,0 +1,33 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "plant/crane_dynamics.hpp"
+
+namespace steadyboom::plant {
+
+/// The static equilibrium and how well it was met.
+struct Equilibrium {
+    CraneState state;             ///< velocities and piston are zero
+    double pendent_tension_N;
+    double load_line_tension_N;
+    double residual;              ///< largest |Q_i| over the weight (times 1 m for the angles), dimensionless
+    int iterations;
+};
+
+/// The crane cannot stand: Newton did not converge, or it did at a pendent or load line that is slack or a track that
+/// lifted. The message says which and how large the residual is.
+struct EquilibriumError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Damped Newton on Q(p, 0, X_p = 0) = 0 (thesis 4-3), started from the unstretched geometry.
+/// Converged means residual <= 1e-12. Throws EquilibriumError otherwise; never returns an unconverged state.
+[[nodiscard]] Equilibrium find_equilibrium(const CraneDynamics& crane);
+
+/// -dQ/dp at rest with the piston fixed at X_p = 0, central differences, symmetrised; N/m, N, N m as the coordinates ask.
+/// The contact with the soil is what it is at `coordinates`.
+[[nodiscard]] MassMatrix stiffness_matrix(const CraneDynamics& crane, const Coordinates& coordinates);
+
+}  // namespace steadyboom::plant
