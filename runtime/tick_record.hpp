@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "plant/crane_measurement.hpp"
+#include "plant/crane_state.hpp"
+
+namespace steadyboom::runtime {
+
+/// Everything one control tick saw, thought and did. Plain bytes: it is copied through shared memory to other
+/// processes.
+///
+/// Set-point, measurement, estimate and command are four records, and wanted, limited and applied are three fields:
+/// none is ever derived from another by a reader. Times are CLOCK_MONOTONIC; in lockstep they are the simulated time
+/// and every duration is zero, so that two runs of one seed are the same bytes. Counters count since the program's
+/// start.
+struct TickRecord {
+    /// Raised whenever the layout or a meaning below changes; readers refuse any other.
+    static constexpr std::uint32_t layout_version = 1;
+
+    std::uint64_t tick = 0;             ///< index k of the schedule; skipped ticks leave gaps
+    std::int64_t time_ns = 0;           ///< when tick k was due, t0 + k T
+    std::int64_t samples_stamp_ns = 0;  ///< steady time of the SYNC on which the samples below were taken
+
+    // What the bus brought (plant::CraneMeasurement).
+    std::array<double, plant::sensor_count> measured{};  ///< indexed by plant::Sensor, which names each unit
+    std::array<std::uint32_t, plant::sensor_count> measured_age_ticks{};
+    std::uint32_t measured_valid_bits = 0;  ///< bit i is CraneMeasurement::valid[i]
+    std::uint32_t safety_inputs_age_ticks = 0;
+    std::uint32_t skipped_ticks = 0;  ///< deadlines passed over between the previous tick and this one
+
+    // What the observer made of it and what is wanted of the crane, both plant::CraneState.
+    std::array<double, plant::state_count> estimate{};
+    std::array<double, plant::state_count> setpoint{};
+    double observer_nis = 0.0;  ///< normalised innovation squared of this tick's correction
+
+    // The command on its way to the valve.
+    double wanted_opening_m = 0.0;   ///< from the law
+    double limited_opening_m = 0.0;  ///< after the performance limits
+    double applied_opening_m = 0.0;  ///< after the guard: what was sent
+    double authority = 0.0;          ///< of the interlock's permission, 0 to 1
+
+    std::uint32_t limit_reasons = 0;       ///< plant::LimitReason bits of the limited command
+    std::uint32_t guard_reasons = 0;       ///< plant::LimitReason bits of the applied command
+    std::uint32_t permission_reasons = 0;  ///< InterlockReason bits
+
+    std::uint8_t interlock_state = 0;
+    std::uint8_t valve_state = 0;       ///< plant::ValveState heard
+    std::uint8_t permitted_mode = 0;    ///< plant::ValveMode of the permission
+    std::uint8_t applied_mode = 0;      ///< plant::ValveMode sent
+    std::uint8_t cutoff_permitted = 0;  ///< 1: the interlock lets the cut-off valve open
+    std::uint8_t cutoff_energised = 0;  ///< 1: the guard's last word opened it
+    std::uint8_t cutoff_open = 0;       ///< 1: the safety input reports it open
+    std::uint8_t emergency_stop_healthy = 0;
+    std::uint32_t reserved = 0;
+
+    // Health of bus and schedule.
+    std::uint64_t received_frames = 0;
+    std::uint64_t dropped_frames = 0;
+    std::uint64_t send_errors = 0;
+    std::int64_t wake_up_latency_ns = 0;
+    std::int64_t receive_duration_ns = 0;
+    std::int64_t decode_duration_ns = 0;
+    std::int64_t observe_duration_ns = 0;
+    std::int64_t interlock_duration_ns = 0;
+    std::int64_t law_duration_ns = 0;
+    std::int64_t limit_duration_ns = 0;  ///< limiter and guard
+    std::int64_t send_duration_ns = 0;
+    std::int64_t predict_duration_ns = 0;  ///< the observer's prediction after the send
+};
+
+static_assert(std::is_trivially_copyable_v<TickRecord>);
+static_assert(sizeof(TickRecord) % sizeof(std::uint64_t) == 0);
+
+}  // namespace steadyboom::runtime
