@@ -33,7 +33,6 @@ guest_processes() { # of this test's guests alone: their kernel line names the s
     done 2>/dev/null
 }
 no_guest_left() { [ -z "$(guest_processes)" ]; }
-guest_runs() { [ -n "$(guest_processes)" ]; }
 
 CommandSeesVcanAndItsOutputAndStatusComeBackExactly() {
     for byte in {0..255}; do printf "\\x$(printf %x "$byte")"; done >"$scratch/all-bytes"
@@ -91,9 +90,10 @@ WrongUseIsStatus125() {
 }
 
 KilledWrapperLeavesNothingBehind() {
-    "$vcan_run" -t 60 -i "" sleep 60 &
+    mkdir "$scratch/real"
+    "$vcan_run" -t 60 -i "" -w "$scratch/real" sh -c "touch '$scratch/real/started'; sleep 60" &
     local wrapper=$!
-    wait_until 100 guest_runs || refute "the guest never started"
+    wait_until 300 test -e "$scratch/real/started" || refute "the guest never started"
     kill -KILL $wrapper
     wait $wrapper 2>/dev/null
     wait_until 50 no_guest_left || refute "processes are left: $(guest_processes)"
