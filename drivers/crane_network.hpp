@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "drivers/can_bus.hpp"
+#include "drivers/can_frame.hpp"
+#include "drivers/command_guard.hpp"
+#include "drivers/device_table.hpp"
+#include "plant/crane_measurement.hpp"
+
+namespace steadyboom::drivers {
+
+/// One device as its heartbeats tell.
+struct NodeStatus {
+    NodeState state = NodeState::unknown;  ///< as last heard
+    bool alive = false;                    ///< heard within heartbeat_consumer_time_ns
+    std::int64_t heartbeat_age_ns = 0;     ///< since the last heartbeat; 0 before the first
+    std::uint32_t boot_ups = 0;
+};
+
+/// What the controller's side of the network has seen. Counters are since construction.
+struct NetworkStatus {
+    std::array<NodeStatus, device_count> nodes;  ///< by Device; the controller's own entry stays unknown
+    std::uint64_t accepted_frames = 0;
+    std::uint64_t unknown_id_frames = 0;  ///< no device sends this identifier
+    std::uint64_t wrong_length_frames = 0;
+    std::uint64_t remote_or_extended_frames = 0;
+    std::uint64_t error_frames = 0;         ///< the interface's error messages
+    std::uint32_t last_error_class = 0;     ///< identifier of the newest one (linux/can/error.h)
+    std::uint64_t superseded_frames = 0;    ///< followed by a newer one of the same message in the same tick
+    std::uint64_t out_of_range_values = 0;  ///< beyond the table's limits, "no value" codes, unknown states
+    std::uint64_t faulty_values = 0;        ///< the device itself says that the sample is not good
+    std::uint64_t nmt_starts = 0;           ///< NMT start messages encoded
+};
+
+/// The controller's side of the network: frames to a measurement, a guarded command to frames. One decode() and then
+/// one encode() make a tick. Allocates nothing after construction.
+class CraneNetwork {
+  public:
+    /// Throws std::invalid_argument as DeviceTable does, and when the worst-case bus load is above 70 %.
+    explicit CraneNetwork(const NetworkConfig& config);
+
+    /// Takes only frames whose identifier, length and type are a device's; the newest sample of each message wins. A
+    /// value that is out of range or that its device calls faulty leaves the last good one in place and makes the
+    /// channel invalid. Ages are in calls of decode(). The stamp is the time of the last encode(): the SYNC on which
+    /// the samples were taken.
+    [[nodiscard]] plant::CraneMeasurement decode(std::span<const CanFrame> frames, std::int64_t now_ns) noexcept;
+
+    /// Frames of this tick, in this order: a heartbeat (each 100 ms) or else one NMT start (all nodes at first, later
+    /// any that reports boot-up or pre-operational), cut-off output, valve control word and set-point, SYNC. Never more
+    /// than four, the length of the interface's transmit queue. Valid until the next call.
+    [[nodiscard]] std::span<const CanFrame> encode(const GuardedCommand& command, std::int64_t now_ns) noexcept;
+
+    [[nodiscard]] const NetworkStatus& status() const noexcept { return status_; }
+    [[nodiscard]] const DeviceTable& table() const noexcept { return table_; }
+
+    /// Identifiers that decode() takes, for the kernel.
+    [[nodiscard]] std::vector<CanFilter> filters() const;
+
+  private:
+    static constexpr std::size_t most_frames = 4;
+
+    [[nodiscard]] Message accepted_message(const CanFrame& frame) noexcept;
+    void decode_heartbeat(Device device, std::uint8_t state_raw, std::int64_t now_ns) noexcept;
+    void decode_pdo(Message message, const CanFrame& frame) noexcept;
+    void decode_sensor(const SignalRow& row, const CanFrame& frame) noexcept;
+    void append_housekeeping(std::int64_t now_ns) noexcept;
+    void append_nmt_start(std::uint8_t node, std::int64_t now_ns) noexcept;
+    void append(const CanFrame& frame) noexcept { frames_[frame_count_++] = frame; }
+
+    DeviceTable table_;
+    NetworkStatus status_;
+    plant::CraneMeasurement measurement_;
+    std::array<std::int64_t, device_count> heartbeat_stamp_ns_{};
+    std::array<bool, device_count> needs_start_{};
+    std::array<std::int64_t, message_count> newest_frame_{};
+    bool started_all_ = false;
+    bool booted_ = false;
+    std::int64_t next_heartbeat_ns_ = 0;
+    std::int64_t sync_stamp_ns_ = 0;
+    std::uint8_t sync_counter_ = 0;
+    std::array<CanFrame, most_frames> frames_;
+    std::size_t frame_count_ = 0;
+};
+
+}  // namespace steadyboom::drivers

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "drivers/can_bus.hpp"
+#include "drivers/can_frame.hpp"
+#include "drivers/device_table.hpp"
+#include "plant/crane_measurement.hpp"
+#include "plant/valve_command.hpp"
+
+namespace steadyboom::drivers {
+
+/// What the valve and the cut-off output were last told.
+struct ValveOrder {
+    plant::ValveMode mode = plant::ValveMode::disabled;  ///< disabled too when the control word asks for no known mode
+    double set_point_m = 0.0;                            ///< at most the spool's travel
+    std::int64_t stamp_ns = 0;                           ///< when the last valve order came
+    bool ever = false;                                   ///< a valve order came since the valve started
+    bool cutoff_energised = false;
+    std::int64_t cutoff_stamp_ns = 0;  ///< when the last cut-off order came
+    bool cutoff_ever = false;
+};
+
+/// What the valve and the safety inputs report beside the sensors.
+struct ValveFeedback {
+    plant::ValveState state = plant::ValveState::not_ready;
+    bool cutoff_open = false;
+    bool emergency_stop_healthy = true;
+};
+
+/// Counters since construction.
+struct DeviceNetworkStatus {
+    std::uint64_t accepted_frames = 0;
+    std::uint64_t unknown_id_frames = 0;
+    std::uint64_t wrong_length_frames = 0;
+    std::uint64_t remote_or_extended_frames = 0;
+    std::uint64_t error_frames = 0;
+    std::uint64_t not_operational_frames = 0;  ///< process data for a node that is not operational
+    std::uint64_t unknown_orders = 0;          ///< NMT commands and control words that mean nothing
+};
+
+/// The crane's side of the network: all its devices in one object, each with an NMT state of its own. Allocates nothing
+/// after construction. A round is receive(), then housekeeping(), then answer_sync() if sync_pending().
+class DeviceNetwork {
+  public:
+    /// Throws std::invalid_argument as DeviceTable does.
+    explicit DeviceNetwork(const NetworkConfig& config);
+
+    /// Obeys NMT, takes orders (operational nodes only), notes SYNC.
+    void receive(std::span<const CanFrame> frames, std::int64_t now_ns) noexcept;
+
+    [[nodiscard]] const ValveOrder& valve_order() const noexcept { return order_; }
+    [[nodiscard]] bool sync_pending() const noexcept { return sync_pending_; }
+    [[nodiscard]] std::uint8_t sync_counter() const noexcept { return sync_counter_; }
+
+    /// TPDOs of every operational node that is not silent, values rounded to the bus's resolution; beyond a channel's
+    /// range its status byte says overflow or underflow. Empty if no SYNC is pending. Valid until the next call.
+    [[nodiscard]] std::span<const CanFrame> answer_sync(const plant::SensorVector& sensors,
+                                                        const ValveFeedback& feedback, std::int64_t now_ns) noexcept;
+
+    /// Boot-up messages first, then a heartbeat of each node every 100 ms. Valid until the next call.
+    [[nodiscard]] std::span<const CanFrame> housekeeping(std::int64_t now_ns) noexcept;
+
+    [[nodiscard]] NodeState state(Device device) const noexcept { return nodes_[index_of(device)].state; }
+    [[nodiscard]] const DeviceNetworkStatus& status() const noexcept { return status_; }
+    [[nodiscard]] const DeviceTable& table() const noexcept { return table_; }
+
+    /// Identifiers that receive() takes, for the kernel.
+    [[nodiscard]] std::vector<CanFilter> filters() const;
+
+    /// A silent device sends nothing at all, but still listens.
+    void set_silent(Device device, bool silent) noexcept { nodes_[index_of(device)].silent = silent; }
+
+    /// Keeps back the PDO that carries this channel, and so every other channel in it.
+    void set_silent(plant::Sensor sensor, bool silent) noexcept;
+
+    /// Power off and on: the node forgets its orders and boots again.
+    void restart(Device device) noexcept;
+
+  private:
+    struct Node {
+        NodeState state = NodeState::boot_up;  ///< boot_up until its boot-up message has left
+        bool silent = false;
+        std::int64_t next_heartbeat_ns = 0;
+    };
+
+    [[nodiscard]] Message accepted_message(const CanFrame& frame) noexcept;
+    void obey_nmt(const CanFrame& frame) noexcept;
+    void obey_nmt(Device device, NmtCommand command) noexcept;
+    void take_valve_order(const CanFrame& frame, std::int64_t now_ns) noexcept;
+    void forget_orders(Device device) noexcept;
+    [[nodiscard]] bool operational(Device device) const noexcept { return state(device) == NodeState::operational; }
+
+    DeviceTable table_;
+    DeviceNetworkStatus status_;
+    std::array<Node, device_count> nodes_;  ///< the controller's entry is unused
+    std::array<bool, message_count> message_silent_{};
+    ValveOrder order_;
+    bool sync_pending_ = false;
+    std::uint8_t sync_counter_ = 0;
+    std::array<CanFrame, message_count> answers_;
+    std::array<CanFrame, device_count> heartbeats_;
+};
+
+}  // namespace steadyboom::drivers

@@ -1,0 +1,284 @@
+#include "drivers/socketcan_bus.hpp"
+
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+namespace steadyboom::drivers {
+namespace {
+
+constexpr std::size_t batch_frames = 64;
+
+BusError bus_error(int error) noexcept {
+    switch (error) {
+        case ENOBUFS:
+        case EAGAIN:
+            return BusError::no_room;
+        case ENETDOWN:
+            return BusError::down;
+        case ENXIO:
+        case ENODEV:
+            return BusError::gone;
+        default:
+            return BusError::other;
+    }
+}
+
+std::int64_t steady_now_ns() noexcept {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+CanFrame from_kernel(const can_frame& raw, std::int64_t stamp_ns) noexcept {
+    CanFrame frame;
+    frame.extended = (raw.can_id & CAN_EFF_FLAG) != 0;
+    frame.remote = (raw.can_id & CAN_RTR_FLAG) != 0;
+    frame.error = (raw.can_id & CAN_ERR_FLAG) != 0;
+    frame.id = raw.can_id & (frame.error ? CAN_ERR_MASK : frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK);
+    frame.length = std::min<std::uint8_t>(raw.can_dlc, CAN_MAX_DLEN);
+    std::copy_n(std::begin(raw.data), frame.length, frame.data.begin());
+    frame.stamp_ns = stamp_ns;
+    return frame;
+}
+
+can_frame to_kernel(const CanFrame& frame) noexcept {
+    can_frame raw{};
+    raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0U) | (frame.remote ? CAN_RTR_FLAG : 0U) |
+                 (frame.error ? CAN_ERR_FLAG : 0U);
+    raw.can_dlc = frame.length;
+    std::copy_n(frame.data.begin(), std::min<std::size_t>(frame.length, frame.data.size()), std::begin(raw.data));
+    return raw;
+}
+
+/// A socket that closes itself until released.
+class Socket {
+  public:
+    Socket() : fd_(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)) {}
+    ~Socket() {
+        if (fd_ >= 0) {
+            ::close(fd_);
+        }
+    }
+    Socket(const Socket&) = delete;
+    Socket& operator=(const Socket&) = delete;
+    [[nodiscard]] int fd() const noexcept { return fd_; }
+    [[nodiscard]] int release() noexcept { return std::exchange(fd_, -1); }
+
+    template <typename T>
+    [[nodiscard]] bool set(int level, int option, const T& value) noexcept {
+        return ::setsockopt(fd_, level, option, &value, sizeof value) == 0;
+    }
+
+  private:
+    int fd_;
+};
+
+[[noreturn]] void fail(const std::string& interface, const std::string& why) {
+    throw std::runtime_error("CAN interface '" + interface + "': " + why);
+}
+
+std::string reason(int error) {
+    return std::strerror(error);
+}
+
+/// Opens, sets up and binds a socket, and says how large a receive buffer it got. Throws std::runtime_error.
+std::pair<int, int> open_socket(const std::string& interface, const SocketCanOptions& options) {
+    ifreq request{};
+    if (interface.empty() || interface.size() >= sizeof request.ifr_name) {
+        fail(interface, "not an interface name: allowed is 1 to 15 characters");
+    }
+    Socket socket;
+    if (socket.fd() < 0) {
+        fail(interface, "this kernel opens no CAN socket (" + reason(errno) + "): modprobe can-raw");
+    }
+    std::copy(interface.begin(), interface.end(), std::begin(request.ifr_name));
+    if (::ioctl(socket.fd(), SIOCGIFINDEX, &request) != 0) {
+        fail(interface, "there is none (" + reason(errno) + "): plug the adapter in, or ip link add " + interface +
+                            " type vcan && ip link set " + interface + " up");
+    }
+    std::vector<can_filter> filters;
+    filters.reserve(options.filters.size());
+    for (const auto& filter : options.filters) {
+        filters.push_back({.can_id = filter.id, .can_mask = CAN_SFF_MASK});
+    }
+    if (!filters.empty() && ::setsockopt(socket.fd(), SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
+                                         static_cast<socklen_t>(filters.size() * sizeof(can_filter))) != 0) {
+        fail(interface, "the kernel refuses " + std::to_string(filters.size()) + " filters (" + reason(errno) + ")");
+    }
+    const can_err_mask_t errors = options.error_messages ? CAN_ERR_MASK : 0U;
+    if (!socket.set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) || !socket.set(SOL_SOCKET, SO_RXQ_OVFL, 1)) {
+        fail(interface, "the kernel refuses a socket option (" + reason(errno) + "): Linux 5.10 or newer is needed");
+    }
+    if (!socket.set(SOL_SOCKET, SO_RCVBUFFORCE, options.receive_buffer_bytes) &&
+        !socket.set(SOL_SOCKET, SO_RCVBUF, options.receive_buffer_bytes)) {
+        fail(interface, "the kernel refuses a receive buffer (" + reason(errno) + ")");
+    }
+    int granted_bytes = 0;
+    socklen_t size = sizeof granted_bytes;
+    ::getsockopt(socket.fd(), SOL_SOCKET, SO_RCVBUF, &granted_bytes, &size);
+
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = request.ifr_ifindex;
+    if (::bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+        fail(interface,
+             "cannot be bound (" + reason(errno) + "): is it a CAN interface? see ip -details link show " + interface);
+    }
+    return {socket.release(), granted_bytes};
+}
+
+}  // namespace
+
+/// What recvmmsg and sendmmsg point into; wired once.
+struct SocketCanBus::Buffers {
+    struct Control {
+        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t))> bytes;
+    };
+
+    Buffers() {
+        for (std::size_t i = 0; i < batch_frames; ++i) {
+            receive_vectors[i] = {.iov_base = &receive_frames[i], .iov_len = sizeof(can_frame)};
+            send_vectors[i] = {.iov_base = &send_frames[i], .iov_len = sizeof(can_frame)};
+            receive_messages[i].msg_hdr.msg_iov = &receive_vectors[i];
+            receive_messages[i].msg_hdr.msg_iovlen = 1;
+            receive_messages[i].msg_hdr.msg_control = controls[i].bytes.data();
+            send_messages[i].msg_hdr.msg_iov = &send_vectors[i];
+            send_messages[i].msg_hdr.msg_iovlen = 1;
+        }
+    }
+
+    std::array<can_frame, batch_frames> receive_frames{};
+    std::array<iovec, batch_frames> receive_vectors{};
+    std::array<Control, batch_frames> controls{};
+    std::array<mmsghdr, batch_frames> receive_messages{};
+    std::array<can_frame, batch_frames> send_frames{};
+    std::array<iovec, batch_frames> send_vectors{};
+    std::array<mmsghdr, batch_frames> send_messages{};
+};
+
+SocketCanBus::SocketCanBus(std::string interface, SocketCanOptions options)
+    : interface_(std::move(interface)), options_(std::move(options)), buffers_(std::make_unique<Buffers>()) {
+    std::tie(fd_, granted_buffer_bytes_) = open_socket(interface_, options_);
+}
+
+SocketCanBus::~SocketCanBus() {
+    ::close(fd_);
+}
+
+std::size_t SocketCanBus::receive(std::span<CanFrame> into) noexcept {
+    std::size_t filled = 0;
+    while (filled < into.size()) {
+        const auto wanted = std::min(batch_frames, into.size() - filled);
+        for (std::size_t i = 0; i < wanted; ++i) {
+            buffers_->receive_messages[i].msg_hdr.msg_controllen = sizeof(Buffers::Control);
+        }
+        const int count =
+            ::recvmmsg(fd_, buffers_->receive_messages.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
+        if (count < 0) {
+            if (errno != EAGAIN && errno != EINTR) {
+                note_receive_error(errno);
+            }
+            break;
+        }
+        const auto stamp_ns = steady_now_ns();
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+            auto& message = buffers_->receive_messages[i];
+            for (auto* control = CMSG_FIRSTHDR(&message.msg_hdr); control != nullptr;
+                 control = CMSG_NXTHDR(&message.msg_hdr, control)) {
+                if (control->cmsg_level == SOL_SOCKET && control->cmsg_type == SO_RXQ_OVFL) {
+                    std::uint32_t socket_total = 0;
+                    std::memcpy(&socket_total, CMSG_DATA(control), sizeof socket_total);
+                    note_overflow(socket_total);
+                }
+            }
+            if (message.msg_len != CAN_MTU) {
+                ++status_.malformed_frames;
+                continue;
+            }
+            into[filled] = from_kernel(buffers_->receive_frames[i], stamp_ns);
+            status_.local_frames += (message.msg_hdr.msg_flags & MSG_DONTROUTE) != 0 ? 1U : 0U;
+            status_.error_frames += into[filled].error ? 1U : 0U;
+            ++status_.received_frames;
+            ++filled;
+        }
+        status_.receive_error = BusError::none;
+        if (static_cast<std::size_t>(count) < wanted) {
+            break;
+        }
+    }
+    return filled;
+}
+
+SendResult SocketCanBus::send(std::span<const CanFrame> frames) noexcept {
+    SendResult result;
+    while (result.sent < frames.size() && result.error == BusError::none) {
+        const auto wanted = std::min(batch_frames, frames.size() - result.sent);
+        for (std::size_t i = 0; i < wanted; ++i) {
+            buffers_->send_frames[i] = to_kernel(frames[result.sent + i]);
+        }
+        const int count = ::sendmmsg(fd_, buffers_->send_messages.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT);
+        if (count < 0) {
+            result.error = bus_error(errno);
+            status_.last_errno = errno;
+        } else {
+            result.sent += static_cast<std::size_t>(count);
+            if (static_cast<std::size_t>(count) < wanted) {
+                // The kernel keeps to itself why it stopped midway; a queue that has filled up is the usual reason.
+                result.error = BusError::no_room;
+                status_.last_errno = ENOBUFS;
+            }
+        }
+    }
+    result.dropped = frames.size() - result.sent;
+    status_.sent_frames += result.sent;
+    status_.send_dropped_frames += result.dropped;
+    status_.send_error = result.error;
+    if (result.error != BusError::none) {
+        ++status_.send_errors;
+    } else if (result.sent > 0) {
+        status_.receive_error = BusError::none;
+    }
+    return result;
+}
+
+bool SocketCanBus::reopen() noexcept {
+    try {
+        const auto [fd, granted_bytes] = open_socket(interface_, options_);
+        ::close(std::exchange(fd_, fd));
+        granted_buffer_bytes_ = granted_bytes;
+    } catch (const std::exception&) {
+        return false;
+    }
+    socket_overflow_frames_ = 0;
+    status_.receive_error = BusError::none;
+    status_.send_error = BusError::none;
+    return true;
+}
+
+void SocketCanBus::note_receive_error(int error) noexcept {
+    status_.receive_error = bus_error(error);
+    status_.last_errno = error;
+    ++status_.receive_errors;
+}
+
+void SocketCanBus::note_overflow(std::uint32_t socket_total) noexcept {
+    // Unsigned, so that the socket's 32-bit counter may wrap.
+    status_.receive_overflow_frames += socket_total - socket_overflow_frames_;
+    socket_overflow_frames_ = socket_total;
+}
+
+}  // namespace steadyboom::drivers
