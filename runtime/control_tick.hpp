@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+
+#include "controllers/interlock.hpp"
+#include "controllers/law.hpp"
+#include "controllers/limiter.hpp"
+#include "controllers/observer.hpp"
+#include "drivers/can_bus.hpp"
+#include "drivers/command_guard.hpp"
+#include "drivers/crane_network.hpp"
+#include "plant/equilibrium.hpp"
+#include "runtime/clock.hpp"
+#include "runtime/operator_mailbox.hpp"
+#include "runtime/overrun_monitor.hpp"
+#include "runtime/periodic_loop.hpp"
+#include "runtime/tick_record.hpp"
+#include "runtime/tick_ring.hpp"
+
+namespace steadyboom::runtime {
+
+/// Everything a control tick is built from.
+struct ControlTickConfig {
+    plant::CraneParameters crane;  ///< the controller's own copy of the crane
+    controllers::LawKind law = controllers::LawKind::none;
+    controllers::ThesisGains gains;
+    drivers::NetworkConfig network;  ///< its period is the tick's
+    double max_opening_m = 0.0;      ///< performance limit on the command
+    double max_slew_m_s = 0.0;       ///< performance limit on its rate
+    double engage_ramp_s = 0.5;
+};
+
+/// One control tick, the heart of the program: frames in, estimate, permission, command, frames out, record.
+///
+///     read -> decode -> correct, predict -> interlock -> law -> limiter -> guard -> send -> record
+///
+/// SYNC leaves with the command at the end of tick k, sensors sample on it, and what is read in tick k+1 belongs to
+/// t_k. So the observer corrects x(t_k) with it and predicts x(t_k+1) with the command that was applied in between; the
+/// law acts on the crane as it is now, not as it was one tick ago (docs/decisions.md).
+///
+/// Constructing allocates and may throw (plant::EquilibriumError, std::invalid_argument); run() does neither.
+class ControlTick {
+  public:
+    /// `bus`, `clock`, `mailbox` and `ring` must outlive this. The clock times the stages only.
+    ControlTick(const ControlTickConfig& config, drivers::CanBus& bus, const Clock& clock, OperatorMailbox& mailbox,
+                TickRingWriter<TickRecord>& ring);
+
+    void run(const TickStart& start) noexcept;
+
+    /// Of the newest tick.
+    [[nodiscard]] const TickRecord& record() const noexcept { return record_; }
+    [[nodiscard]] const plant::Equilibrium& equilibrium() const noexcept { return equilibrium_; }
+    [[nodiscard]] const drivers::CraneNetwork& network() const noexcept { return network_; }
+    [[nodiscard]] const controllers::Interlock& interlock() const noexcept { return interlock_; }
+
+  private:
+    /// A tick never reads more frames than this; what is left over stays in the socket for the next.
+    static constexpr std::size_t most_frames = 512;
+
+    [[nodiscard]] controllers::OperatorIntent next_intent() noexcept;
+    void answer_operator() noexcept;
+    [[nodiscard]] std::int64_t lap_ns() noexcept;
+
+    drivers::CanBus& bus_;
+    const Clock& clock_;
+    OperatorMailbox& mailbox_;
+    TickRingWriter<TickRecord>& ring_;
+
+    plant::CraneDynamics crane_;
+    plant::Equilibrium equilibrium_;
+    drivers::CraneNetwork network_;
+    controllers::Observer observer_;
+    controllers::Interlock interlock_;
+    controllers::Law law_;
+    controllers::Limiter limiter_;
+    drivers::CommandGuard guard_;
+    OverrunMonitor overruns_;
+
+    controllers::Health health_;
+    double applied_opening_m_ = 0.0;  ///< by the previous tick, in force since then
+    std::optional<OperatorRequest> request_;
+    std::int64_t lap_start_ns_ = 0;
+    std::array<drivers::CanFrame, most_frames> frames_;
+    TickRecord record_;
+};
+
+}  // namespace steadyboom::runtime
