@@ -1,0 +1,326 @@
+#include "drivers/crane_network.hpp"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <type_traits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "drivers/pdo_codec.hpp"
+
+namespace steadyboom::drivers {
+namespace {
+
+static_assert(std::is_trivially_copyable_v<NetworkStatus>);
+
+constexpr std::int64_t tick_ns = 5'000'000;
+constexpr auto never = plant::CraneMeasurement::never;
+
+class CraneNetworkTest : public ::testing::Test {
+  protected:
+    plant::CraneMeasurement decode(const std::vector<CanFrame>& frames) {
+        now_ns_ += tick_ns;
+        return network_.decode(frames, now_ns_);
+    }
+
+    std::vector<CanFrame> encode(const GuardedCommand& command) {
+        const auto frames = network_.encode(command, now_ns_);
+        return {frames.begin(), frames.end()};
+    }
+
+    [[nodiscard]] CanFrame with_value(Signal signal, double value_unit) const {
+        const auto& row = network_.table().row(signal);
+        auto frame = network_.table().blank(row.message, 0);
+        (void)encode_value(row, value_unit, frame);
+        return frame;
+    }
+
+    [[nodiscard]] CanFrame heartbeat(Message message, NodeState state) const {
+        auto frame = network_.table().blank(message, 0);
+        frame.data[0] = static_cast<std::uint8_t>(state);
+        return frame;
+    }
+
+    /// Encodes until the controller's own boot-up and the start of all nodes are out.
+    void settle() {
+        (void)encode(guard_.neutral());
+        (void)encode(guard_.neutral());
+    }
+
+    std::int64_t now_ns_ = 1'000'000'000;
+    CraneNetwork network_{NetworkConfig{}};
+    CommandGuard guard_{{.max_opening_m = 7.6e-3, .max_step_m = 7.6e-3}};
+};
+
+TEST_F(CraneNetworkTest, AcceptsExactlyTheDevicesFramesOfAllThatCanBeOnTheBus) {
+    const std::map<std::uint32_t, int> length_by_id = {
+        {0x190, 6}, {0x194, 4}, {0x198, 5}, {0x199, 4}, {0x19C, 4}, {0x1A0, 4}, {0x2A0, 6}, {0x1A8, 1},
+        {0x710, 1}, {0x714, 1}, {0x718, 1}, {0x719, 1}, {0x71C, 1}, {0x720, 1}, {0x728, 1},
+    };
+    NetworkStatus expected;
+    for (std::uint32_t id = 0; id < standard_id_count; ++id) {
+        for (std::uint8_t length = 0; length <= 8; ++length) {
+            for (int kind = 0; kind < 4; ++kind) {
+                const CanFrame frame{
+                    .id = id, .length = length, .extended = kind == 1, .remote = kind == 2, .error = kind == 3};
+                const std::array frames = {frame};
+                (void)network_.decode(frames, now_ns_);
+                const auto known = length_by_id.find(id);
+                if (kind == 3) {
+                    ++expected.error_frames;
+                } else if (kind != 0) {
+                    ++expected.remote_or_extended_frames;
+                } else if (known == length_by_id.end()) {
+                    ++expected.unknown_id_frames;
+                } else if (known->second != length) {
+                    ++expected.wrong_length_frames;
+                } else {
+                    ++expected.accepted_frames;
+                }
+                const auto& status = network_.status();
+                ASSERT_EQ(status.accepted_frames, expected.accepted_frames) << id << " " << int{length} << " " << kind;
+                ASSERT_EQ(status.error_frames, expected.error_frames);
+                ASSERT_EQ(status.remote_or_extended_frames, expected.remote_or_extended_frames);
+                ASSERT_EQ(status.unknown_id_frames, expected.unknown_id_frames);
+                ASSERT_EQ(status.wrong_length_frames, expected.wrong_length_frames);
+            }
+        }
+    }
+    EXPECT_EQ(expected.accepted_frames, length_by_id.size());
+}
+
+TEST_F(CraneNetworkTest, FrameOfTheWrongKindLeavesTheMeasurementUntouched) {
+    auto good = with_value(Signal::boom_angle, 1.0);
+    for (auto change : std::vector<void (*)(CanFrame&)>{
+             [](CanFrame& f) { f.extended = true; }, [](CanFrame& f) { f.remote = true; },
+             [](CanFrame& f) { f.error = true; }, [](CanFrame& f) { f.length = 3; }, [](CanFrame& f) { f.length = 5; },
+             [](CanFrame& f) { f.id |= 0x0800'0000; }}) {
+        auto bad = good;
+        change(bad);
+        const auto measured = decode({bad});
+        EXPECT_EQ(measured.age_ticks[plant::boom_angle_rad], never);
+        EXPECT_EQ(measured.value[plant::boom_angle_rad], 0.0);
+    }
+    EXPECT_TRUE(decode({good}).fresh(plant::boom_angle_rad));
+}
+
+TEST_F(CraneNetworkTest, FiltersAreTheAcceptedIdentifiers) {
+    EXPECT_EQ(network_.filters().size(), 15U);
+    for (const auto& filter : network_.filters()) {
+        const auto message = network_.table().message_with(filter.id);
+        ASSERT_NE(message, Message::none);
+        EXPECT_FALSE(network_.table().row(message).from_controller);
+    }
+}
+
+TEST_F(CraneNetworkTest, AgesCountTheTicksOfSilenceAndTheValueStays) {
+    EXPECT_EQ(decode({}).age_ticks[plant::line_length_m], never);
+    EXPECT_NEAR(decode({with_value(Signal::line_length, 12.2)}).value[plant::line_length_m], 12.2, 1e-9);
+    for (std::uint32_t silent_ticks = 1; silent_ticks < 300; ++silent_ticks) {
+        const auto measured = decode({});
+        ASSERT_EQ(measured.age_ticks[plant::line_length_m], silent_ticks);
+        ASSERT_EQ(measured.age_ticks[plant::boom_angle_rad], never);
+        ASSERT_FALSE(measured.fresh(plant::line_length_m));
+        ASSERT_NEAR(measured.value[plant::line_length_m], 12.2, 1e-9);
+    }
+    EXPECT_EQ(decode({with_value(Signal::line_length, 12.0)}).age_ticks[plant::line_length_m], 0U);
+}
+
+TEST_F(CraneNetworkTest, NewestOfSeveralSamplesWinsAndTheOthersAreCounted) {
+    const auto measured = decode({with_value(Signal::boom_angle, 1.0), with_value(Signal::line_length, 5.0),
+                                  with_value(Signal::boom_angle, 1.1), with_value(Signal::boom_angle, 1.2)});
+    EXPECT_NEAR(measured.value[plant::boom_angle_rad], 1.2, 2e-5);
+    EXPECT_TRUE(measured.fresh(plant::line_length_m));
+    EXPECT_EQ(network_.status().superseded_frames, 2U);
+}
+
+TEST_F(CraneNetworkTest, SampleOutOfRangeKeepsTheLastGoodValueAndIsNotValid) {
+    (void)decode({with_value(Signal::boom_angle, 1.0)});
+    const auto measured = decode({with_value(Signal::boom_angle, 2.5)});
+    EXPECT_FALSE(measured.valid[plant::boom_angle_rad]);
+    EXPECT_FALSE(measured.fresh(plant::boom_angle_rad));
+    EXPECT_NEAR(measured.value[plant::boom_angle_rad], 1.0, 2e-5);
+    EXPECT_EQ(network_.status().out_of_range_values, 1U);
+    EXPECT_FALSE(decode({}).valid[plant::boom_angle_rad]) << "silence after a bad sample does not make it good";
+    EXPECT_TRUE(decode({with_value(Signal::boom_angle, 1.0)}).fresh(plant::boom_angle_rad));
+}
+
+TEST_F(CraneNetworkTest, StatusByteOfTheDeviceDecidesValidityOfItsOwnChannelOnly) {
+    for (const std::uint8_t status_raw : std::vector<std::uint8_t>{1, 3, 5, 255}) {
+        auto strain = with_value(Signal::strain_lower, 100.0);
+        strain.data[5] = status_raw;  // the upper joint's
+        auto pin = with_value(Signal::line_tension, 1000.0);
+        pin.data[4] = status_raw;
+        const auto measured = decode({strain, pin});
+        EXPECT_TRUE(measured.fresh(plant::strain_lower_microstrain));
+        EXPECT_FALSE(measured.valid[plant::strain_upper_microstrain]);
+        EXPECT_FALSE(measured.valid[plant::line_tension_N]);
+        EXPECT_EQ(measured.value[plant::line_tension_N], 0.0);
+    }
+    EXPECT_EQ(network_.status().faulty_values, 8U);
+}
+
+TEST_F(CraneNetworkTest, ValveStateIsTheLowNibbleOfTheStatusWordAndGibberishIsNotReady) {
+    auto frame = network_.table().blank(Message::valve_tpdo1, 0);
+    for (const int nibble : {0b0000, 0b1000, 0b1001, 0b1011, 0b1111, 0b0011, 0b0111, 0b0001}) {
+        write_raw(network_.table().row(Signal::valve_status_word), 0x0700 | nibble, frame);
+        EXPECT_EQ(static_cast<int>(decode({frame}).valve_state), nibble);
+    }
+    for (const int nibble : {0b0010, 0b0100, 0b0101, 0b0110, 0b1010, 0b1100, 0b1101, 0b1110}) {
+        write_raw(network_.table().row(Signal::valve_status_word), nibble, frame);
+        EXPECT_EQ(decode({frame}).valve_state, plant::ValveState::not_ready);
+    }
+}
+
+TEST_F(CraneNetworkTest, SafetyInputsAreUnhealthyUntilHeardAndAge) {
+    auto measured = decode({});
+    EXPECT_FALSE(measured.emergency_stop_healthy);
+    EXPECT_FALSE(measured.cutoff_open);
+    EXPECT_EQ(measured.safety_inputs_age_ticks, never);
+    auto frame = network_.table().blank(Message::safety_tpdo1, 0);
+    frame.data[0] = 0x02;
+    measured = decode({frame});
+    EXPECT_TRUE(measured.emergency_stop_healthy);
+    EXPECT_FALSE(measured.cutoff_open);
+    EXPECT_EQ(measured.safety_inputs_age_ticks, 0U);
+    frame.data[0] = 0x01;
+    EXPECT_TRUE(decode({frame}).cutoff_open);
+    measured = decode({});
+    EXPECT_FALSE(measured.emergency_stop_healthy);
+    EXPECT_EQ(measured.safety_inputs_age_ticks, 1U);
+}
+
+TEST_F(CraneNetworkTest, CommandLeavesAsCutOffThenValveThenSync) {
+    settle();
+    const plant::Permission engaged{.mode = plant::ValveMode::active, .cutoff_energised = true, .authority = 1.0};
+    const auto frames = encode(guard_.pass({3.8e-3}, engaged));
+    ASSERT_EQ(frames.size(), 3U);
+    EXPECT_EQ(frames[0].id, 0x228U);
+    EXPECT_EQ(frames[0].length, 1);
+    EXPECT_EQ(frames[0].data[0], 1);
+    EXPECT_EQ(frames[1].id, 0x220U);
+    EXPECT_EQ(frames[1].length, 4);
+    EXPECT_EQ(frames[1].data, (std::array<std::uint8_t, 8>{0x0F, 0, 0x00, 0x20}));
+    EXPECT_EQ(frames[2].id, 0x080U);
+    EXPECT_EQ(frames[2].length, 1);
+    const auto negative = encode(guard_.pass({-3.8e-3}, engaged));
+    EXPECT_EQ(negative[1].data, (std::array<std::uint8_t, 8>{0x0F, 0, 0x00, 0xE0}));
+    const auto hold = encode(guard_.pass({0.0}, {.mode = plant::ValveMode::hold, .cutoff_energised = true}));
+    EXPECT_EQ(hold[1].data, (std::array<std::uint8_t, 8>{0x0B, 0, 0, 0}));
+    const auto refused = encode(guard_.pass({std::nan("")}, engaged));
+    EXPECT_EQ(refused[0].data[0], 0);
+    EXPECT_EQ(refused[1].data, (std::array<std::uint8_t, 8>{0x09, 0, 0, 0}));
+}
+
+TEST_F(CraneNetworkTest, SetPointNeverLeavesTheValvesFullScale) {
+    CommandGuard generous({.max_opening_m = 1.0, .max_step_m = 1.0});
+    const plant::Permission engaged{.mode = plant::ValveMode::active, .authority = 1.0};
+    settle();
+    EXPECT_EQ(encode(generous.pass({0.5}, engaged))[1].data, (std::array<std::uint8_t, 8>{0x0F, 0, 0x00, 0x40}));
+    EXPECT_EQ(encode(generous.pass({-0.5}, engaged))[1].data, (std::array<std::uint8_t, 8>{0x0F, 0, 0x00, 0xC0}));
+}
+
+TEST_F(CraneNetworkTest, SyncComesLastAndCountsFromOneToTwoHundredAndFortyAndOn) {
+    for (int tick = 0; tick < 1000; ++tick) {
+        now_ns_ += tick_ns;
+        const auto frames = encode(guard_.neutral());
+        ASSERT_LE(frames.size(), 4U);
+        ASSERT_EQ(frames.back().id, 0x080U);
+        ASSERT_EQ(frames.back().data[0], tick % 240 + 1);
+    }
+}
+
+TEST_F(CraneNetworkTest, MeasurementIsStampedWithTheSyncThatAskedForIt) {
+    EXPECT_EQ(decode({}).stamp_ns, 0);
+    (void)encode(guard_.neutral());
+    const auto sync_ns = now_ns_;
+    const auto measured = decode({with_value(Signal::boom_angle, 1.0)});
+    EXPECT_EQ(measured.stamp_ns, sync_ns);
+    EXPECT_NE(now_ns_, sync_ns);
+}
+
+TEST_F(CraneNetworkTest, BootsThenStartsAllNodesThenBeatsEachHundredMilliseconds) {
+    std::vector<std::pair<std::int64_t, CanFrame>> housekeeping;
+    const auto begin_ns = now_ns_;
+    for (int tick = 0; tick < 100; ++tick, now_ns_ += tick_ns) {
+        for (const auto& frame : encode(guard_.neutral())) {
+            if (frame.id == 0x701 || frame.id == 0x000) {
+                housekeeping.emplace_back((now_ns_ - begin_ns) / tick_ns, frame);
+            }
+        }
+    }
+    ASSERT_EQ(housekeeping.size(), 6U);
+    EXPECT_EQ(housekeeping[0].second.id, 0x701U);
+    EXPECT_EQ(housekeeping[0].second.data[0], 0x00);
+    EXPECT_EQ(housekeeping[1].first, 1);
+    EXPECT_EQ(housekeeping[1].second.id, 0x000U);
+    EXPECT_EQ(housekeeping[1].second.length, 2);
+    EXPECT_EQ(housekeeping[1].second.data[0], 0x01);
+    EXPECT_EQ(housekeeping[1].second.data[1], 0x00);
+    for (std::size_t i = 2; i < 6; ++i) {
+        EXPECT_EQ(housekeeping[i].first, 20 * static_cast<std::int64_t>(i - 1));
+        EXPECT_EQ(housekeeping[i].second.id, 0x701U);
+        EXPECT_EQ(housekeeping[i].second.data[0], 0x05);
+    }
+}
+
+TEST_F(CraneNetworkTest, JitterOfTheTickDoesNotSlowTheHeartbeat) {
+    int heartbeats = 0;
+    for (int tick = 0; tick < 2000; ++tick) {
+        now_ns_ += tick_ns;
+        const auto frames = network_.encode(guard_.neutral(), now_ns_ + (tick % 3) * 100'000);
+        heartbeats += frames.front().id == 0x701 ? 1 : 0;
+    }
+    EXPECT_EQ(heartbeats, 100);
+}
+
+TEST_F(CraneNetworkTest, RestartedNodesAreStartedOneATick) {
+    settle();
+    (void)decode({heartbeat(Message::valve_heartbeat, NodeState::boot_up),
+                  heartbeat(Message::strain_heartbeat, NodeState::pre_operational)});
+    const auto first = encode(guard_.neutral());
+    ASSERT_EQ(first.size(), 4U);
+    EXPECT_EQ(first[0].id, 0x000U);
+    EXPECT_EQ(first[0].data[1], 0x10);
+    const auto second = encode(guard_.neutral());
+    ASSERT_EQ(second.size(), 4U);
+    EXPECT_EQ(second[0].data[1], 0x20);
+    EXPECT_EQ(encode(guard_.neutral()).size(), 3U);
+    (void)decode({heartbeat(Message::valve_heartbeat, NodeState::operational),
+                  heartbeat(Message::strain_heartbeat, NodeState::stopped)});
+    EXPECT_EQ(encode(guard_.neutral()).size(), 3U);
+    EXPECT_EQ(network_.status().nmt_starts, 3U);
+}
+
+TEST_F(CraneNetworkTest, HeartbeatsTellStateAndSilence) {
+    const auto& valve = network_.status().nodes[index_of(Device::servo_valve)];
+    EXPECT_EQ(valve.state, NodeState::unknown);
+    EXPECT_FALSE(valve.alive);
+    (void)decode({heartbeat(Message::valve_heartbeat, NodeState::boot_up),
+                  heartbeat(Message::valve_heartbeat, NodeState::operational)});
+    EXPECT_EQ(valve.state, NodeState::operational);
+    EXPECT_EQ(valve.boot_ups, 1U);
+    EXPECT_TRUE(valve.alive);
+    for (int tick = 1; tick <= 50; ++tick) {
+        (void)decode({});
+        ASSERT_TRUE(valve.alive) << tick;
+        ASSERT_EQ(valve.heartbeat_age_ns, tick * tick_ns);
+    }
+    (void)decode({});
+    EXPECT_FALSE(valve.alive);
+    EXPECT_EQ(valve.state, NodeState::operational);
+    (void)decode({heartbeat(Message::valve_heartbeat, static_cast<NodeState>(0x42))});
+    EXPECT_FALSE(valve.alive) << "a state that is none is no sign of life";
+    EXPECT_EQ(network_.status().out_of_range_values, 1U);
+}
+
+TEST_F(CraneNetworkTest, ErrorMessageOfTheInterfaceIsKept) {
+    (void)decode({{.id = 0x40, .length = 8, .error = true}});
+    EXPECT_EQ(network_.status().error_frames, 1U);
+    EXPECT_EQ(network_.status().last_error_class, 0x40U);
+}
+
+}  // namespace
+}  // namespace steadyboom::drivers

@@ -1,0 +1,193 @@
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "drivers/crane_network.hpp"
+#include "drivers/device_network.hpp"
+#include "drivers/loopback_bus.hpp"
+#include "runtime/realtime_section.hpp"
+
+namespace steadyboom::drivers {
+namespace {
+
+constexpr std::int64_t tick_ns = 5'000'000;
+constexpr plant::Permission engaged{.mode = plant::ValveMode::active, .cutoff_energised = true, .authority = 1.0};
+
+/// Controller and crane on one loopback bus; each tick runs the controller, then the crane, inside a RealtimeSection.
+class NetworkLoop : public ::testing::Test {
+  protected:
+    plant::CraneMeasurement tick(double opening_m = 0.0, const plant::Permission& permit = engaged) {
+        const runtime::RealtimeSection no_allocation;
+        now_ns_ += tick_ns;
+        auto& controller_bus = bus_.endpoint(0);
+        auto& crane_bus = bus_.endpoint(1);
+
+        auto count = controller_bus.receive(frames_);
+        const auto measured = controller_.decode({frames_.data(), count}, now_ns_);
+        (void)controller_bus.send(controller_.encode(guard_.pass({opening_m}, permit), now_ns_));
+
+        count = crane_bus.receive(frames_);
+        devices_.receive({frames_.data(), count}, now_ns_);
+        (void)crane_bus.send(devices_.housekeeping(now_ns_));
+        if (devices_.sync_pending()) {
+            (void)crane_bus.send(devices_.answer_sync(sensors_, feedback_, now_ns_));
+        }
+        return measured;
+    }
+
+    void start() {
+        for (int i = 0; i < 10; ++i) {
+            (void)tick();
+        }
+    }
+
+    [[nodiscard]] static plant::SensorVector plausible(double share) {
+        plant::SensorVector sensors;
+        sensors << 300.0 * share, -120.0 * share, 1.0 + 0.1 * share, 133.4e3 * (1.0 + share), 0.05 * share,
+            12.2 + share, -0.01 * share, 3.0e-3 * share, 6.8e6 * (1.0 + 0.5 * share);
+        return sensors;
+    }
+
+    std::int64_t now_ns_ = 0;
+    LoopbackBus bus_;
+    CraneNetwork controller_{NetworkConfig{}};
+    DeviceNetwork devices_{NetworkConfig{}};
+    CommandGuard guard_{{.max_opening_m = 7.6e-3, .max_step_m = 7.6e-3}};
+    plant::SensorVector sensors_ = plausible(0.0);
+    plant::SensorVector resolution_ =
+        (plant::SensorVector() << 0.1, 0.1, 1.75e-5, 1.0, 1.75e-5, 1.0e-4, 1.0e-6, 4.64e-7, 1.0e4).finished();
+    ValveFeedback feedback_;
+    std::array<CanFrame, 64> frames_;
+};
+
+TEST_F(NetworkLoop, NodesAreOperationalWithinTheFirstTicks) {
+    start();
+    const auto measured = tick();
+    for (int sensor = 0; sensor < plant::sensor_count; ++sensor) {
+        EXPECT_TRUE(measured.fresh(static_cast<plant::Sensor>(sensor))) << sensor;
+    }
+    for (std::size_t i = 1; i < device_count; ++i) {
+        EXPECT_EQ(devices_.state(static_cast<Device>(i)), NodeState::operational);
+        EXPECT_TRUE(controller_.status().nodes[i].alive);
+    }
+}
+
+TEST_F(NetworkLoop, SamplesArriveOneTickAfterTheSyncTheyAnswerToWithinHalfAStep) {
+    start();
+    std::optional<plant::SensorVector> sampled;
+    std::int64_t sync_ns = 0;
+    for (int i = 0; i < 2000; ++i) {
+        sensors_ = plausible(std::sin(0.01 * i));
+        const auto measured = tick();
+        if (sampled) {
+            ASSERT_EQ(measured.stamp_ns, sync_ns);
+            for (int s = 0; s < plant::sensor_count; ++s) {
+                ASSERT_TRUE(measured.fresh(static_cast<plant::Sensor>(s)));
+                ASSERT_NEAR(measured.value[s], (*sampled)[s], 0.501 * resolution_[s]) << s;
+            }
+        }
+        sampled = sensors_;
+        sync_ns = now_ns_;
+    }
+    EXPECT_EQ(controller_.status().superseded_frames, 0U);
+    EXPECT_EQ(controller_.status().unknown_id_frames + controller_.status().wrong_length_frames, 0U);
+    EXPECT_EQ(devices_.status().unknown_id_frames + devices_.status().wrong_length_frames, 0U);
+    for (std::size_t i = 1; i < device_count; ++i) {
+        EXPECT_LE(controller_.status().nodes[i].heartbeat_age_ns, heartbeat_interval_ns);
+    }
+}
+
+TEST_F(NetworkLoop, OrderReachesTheValveInTheSameTickWithinHalfAStep) {
+    start();
+    for (int i = 0; i < 500; ++i) {
+        const double opening_m = 7.6e-3 * std::sin(0.05 * i);
+        (void)tick(opening_m);
+        ASSERT_NEAR(devices_.valve_order().set_point_m, opening_m, 0.5 * 7.6e-3 / 16384.0 + 1.0e-9);
+        ASSERT_EQ(devices_.valve_order().stamp_ns, now_ns_);
+        ASSERT_EQ(devices_.valve_order().mode, plant::ValveMode::active);
+        ASSERT_TRUE(devices_.valve_order().cutoff_energised);
+    }
+    (void)tick(0.0, {.mode = plant::ValveMode::hold});
+    EXPECT_EQ(devices_.valve_order().mode, plant::ValveMode::hold);
+    EXPECT_FALSE(devices_.valve_order().cutoff_energised);
+}
+
+TEST_F(NetworkLoop, RefusedCommandReachesTheValveAsDisabledInTheSameTick) {
+    start();
+    (void)tick(2.0e-3);
+    (void)tick(std::nan(""));
+    EXPECT_EQ(devices_.valve_order().set_point_m, 0.0);
+    EXPECT_EQ(devices_.valve_order().mode, plant::ValveMode::disabled);
+    EXPECT_FALSE(devices_.valve_order().cutoff_energised);
+}
+
+TEST_F(NetworkLoop, ValveStateAndSafetyInputsCrossTheBus) {
+    start();
+    feedback_ = {.state = plant::ValveState::fault_hold, .cutoff_open = true, .emergency_stop_healthy = false};
+    (void)tick();
+    const auto measured = tick();
+    EXPECT_EQ(measured.valve_state, plant::ValveState::fault_hold);
+    EXPECT_TRUE(measured.cutoff_open);
+    EXPECT_FALSE(measured.emergency_stop_healthy);
+    EXPECT_EQ(measured.safety_inputs_age_ticks, 0U);
+}
+
+TEST_F(NetworkLoop, RestartedNodeIsStartedAgainWithinThreeTicks) {
+    start();
+    devices_.restart(Device::boom_inclinometer);
+    (void)tick();  // boot-up leaves
+    (void)tick();  // the controller hears it and answers with NMT start
+    EXPECT_EQ(devices_.state(Device::boom_inclinometer), NodeState::operational);
+    EXPECT_TRUE(tick().fresh(plant::boom_angle_rad));
+    EXPECT_EQ(controller_.status().nodes[index_of(Device::boom_inclinometer)].boot_ups, 2U);
+}
+
+TEST_F(NetworkLoop, AllNodesRestartedAtOnceAreBackWithinTenTicks) {
+    start();
+    for (std::size_t i = 1; i < device_count; ++i) {
+        devices_.restart(static_cast<Device>(i));
+    }
+    for (int i = 0; i < 10; ++i) {
+        (void)tick();
+    }
+    const auto measured = tick();
+    for (int s = 0; s < plant::sensor_count; ++s) {
+        EXPECT_TRUE(measured.fresh(static_cast<plant::Sensor>(s))) << s;
+    }
+}
+
+TEST_F(NetworkLoop, SilentNodeAgesAndIsMissedAfterTheConsumerTime) {
+    start();
+    (void)tick();
+    devices_.set_silent(Device::load_pin, true);
+    (void)tick();
+    for (std::uint32_t i = 1; i <= 80; ++i) {
+        const auto measured = tick();
+        ASSERT_EQ(measured.age_ticks[plant::line_tension_N], i);
+        ASSERT_TRUE(measured.fresh(plant::boom_angle_rad));
+    }
+    EXPECT_FALSE(controller_.status().nodes[index_of(Device::load_pin)].alive);
+    EXPECT_TRUE(controller_.status().nodes[index_of(Device::servo_valve)].alive);
+    devices_.set_silent(Device::load_pin, false);
+    (void)tick();
+    EXPECT_TRUE(tick().fresh(plant::line_tension_N));
+}
+
+TEST_F(NetworkLoop, OverflowOfASensorArrivesAsInvalid) {
+    start();
+    sensors_[plant::strain_lower_microstrain] = 1.0e6;
+    sensors_[plant::boom_angle_rad] = 100.0;
+    sensors_[plant::line_angle_rad] = std::nan("");
+    (void)tick();
+    const auto measured = tick();
+    EXPECT_FALSE(measured.valid[plant::strain_lower_microstrain]);
+    EXPECT_FALSE(measured.valid[plant::boom_angle_rad]);
+    EXPECT_FALSE(measured.valid[plant::line_angle_rad]);
+    EXPECT_TRUE(measured.valid[plant::strain_upper_microstrain]);
+    EXPECT_TRUE(measured.value.allFinite());
+}
+
+}  // namespace
+}  // namespace steadyboom::drivers
