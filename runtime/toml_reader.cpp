@@ -158,15 +158,15 @@ std::string Range::text() const {
 
 struct TomlSchema::Document {
     const toml::table& root;
-    std::string file;
 
-    [[noreturn]] void fail(std::size_t line, const std::string& message) const {
-        throw ConfigError(file + ":" + std::to_string(line) + ": " + message);
-    }
     [[nodiscard]] const toml::table* section(const std::string& name) const {
         return name.empty() ? &root : root[name].as_table();
     }
 };
+
+void TomlSchema::fail(std::size_t line, const std::string& message) const {
+    throw ConfigError(file_name_ + ":" + std::to_string(line) + ": " + message);
+}
 
 void TomlSchema::section(std::string name) {
     sections_.push_back({std::move(name), true});
@@ -213,13 +213,13 @@ void TomlSchema::read_file(const std::filesystem::path& path) {
 }
 
 void TomlSchema::read_text(std::string_view toml, std::string_view file_name) {
+    file_name_ = file_name;
     try {
         const toml::table root = toml::parse(toml, file_name);
-        read({root, std::string(file_name)});
+        read({root});
     } catch (const toml::parse_error& error) {
-        throw ConfigError(std::string(file_name) + ":" +
-                          std::to_string(std::max<std::size_t>(1, error.source().begin.line)) +
-                          ": not valid TOML: " + std::string(error.description()));
+        fail(std::max<std::size_t>(1, error.source().begin.line),
+             "not valid TOML: " + std::string(error.description()));
     }
 }
 
@@ -231,9 +231,15 @@ void TomlSchema::read(const Document& document) {
     }
     for (const Key& key : keys_) {
         for (const Rule& rule : key.rules) {
-            if (key.line != 0 && !rule.holds()) {
-                document.fail(key.line, full_name(key) + " = " + value_text(key) + ": must " + rule.requirement);
-            }
+            require(full_name(key), key.line == 0 || rule.holds(), rule.requirement);
+        }
+    }
+}
+
+void TomlSchema::require(std::string_view name, bool holds, const std::string& requirement) const {
+    for (const Key& key : keys_) {
+        if (!holds && full_name(key) == name) {
+            fail(key.line, full_name(key) + " = " + shortened(value_text(key)) + ": must " + requirement);
         }
     }
 }
@@ -274,7 +280,7 @@ void TomlSchema::reject_unknown(const Document& document) const {
         }
     }
     if (!message.empty()) {
-        document.fail(line, message);
+        fail(line, message);
     }
 }
 
@@ -285,12 +291,11 @@ void TomlSchema::read_key(const Document& document, Key& key) {
         if (!section.required) {
             return;
         }
-        document.fail(1, "[" + section.name + "]: section is missing");
+        fail(1, "[" + section.name + "]: section is missing");
     }
     const toml::node* node = table->get(key.name);
     if (node == nullptr) {
-        document.fail(section.name.empty() ? 1 : line_of(*table),
-                      full_name(key) + ": is missing; must be " + key.allowed);
+        fail(section.name.empty() ? 1 : line_of(*table), full_name(key) + ": is missing; must be " + key.allowed);
     }
     key.line = line_of(*node);
 
@@ -332,7 +337,7 @@ void TomlSchema::read_key(const Document& document, Key& key) {
         return true;
     };
     if (!std::visit(accepted, key.binding)) {
-        document.fail(key.line, full_name(key) + " = " + node_text(*node) + ": must be " + key.allowed);
+        fail(key.line, full_name(key) + " = " + node_text(*node) + ": must be " + key.allowed);
     }
 }
 
@@ -392,9 +397,11 @@ std::string TomlSchema::write() const {
 }
 
 std::string TomlSchema::closest_names(std::string_view name, std::string_view section) const {
+    const std::string_view compared = name.substr(0, 2 * longest_shown_text);
     const auto distance = [&](const Key& key) {
-        const std::size_t elsewhere = sections_[key.section].name == section ? 0 : 1;
-        return edit_distance(name.substr(0, 2 * longest_shown_text), key.name) + elsewhere;
+        const std::size_t elsewhere = sections_[key.section].name == section ? 0 : 2;
+        const bool forgot_the_end = key.name != compared && key.name.starts_with(compared);
+        return (forgot_the_end ? 1 : edit_distance(compared, key.name)) + elsewhere;
     };
     const auto closest = std::min_element(keys_.begin(), keys_.end(),
                                           [&](const Key& a, const Key& b) { return distance(a) < distance(b); });

@@ -63,7 +63,7 @@ class TomlSchema {
     void text(std::string key, std::string& variable, std::function<bool(const std::string&)> accepts,
               std::string allowed);
 
-    /// One of `words`, each of which stands for one value.
+    /// One of `words`, each of which stands for one value. The words must outlive the schema, as the variables do.
     template <class Value>
     void word(std::string key, Value& variable, std::span<const std::pair<std::string_view, Value>> words) {
         Word binding;
@@ -88,6 +88,10 @@ class TomlSchema {
     /// Throws ConfigError. Variables may be partly overwritten by then.
     void read_file(const std::filesystem::path& path);
     void read_text(std::string_view toml, std::string_view file_name);
+
+    /// For what can be judged only after reading: throws ConfigError with the line of `full_name` unless it `holds`;
+    /// `requirement` completes the sentence "must ...".
+    void require(std::string_view full_name, bool holds, const std::string& requirement) const;
 
     /// A file that reads back to the same values, bit for bit, provided that they came from a file or scale().
     [[nodiscard]] std::string write() const;
@@ -143,6 +147,7 @@ class TomlSchema {
     struct Document;
 
     void add(std::string name, Binding binding, std::string allowed);
+    [[noreturn]] void fail(std::size_t line, const std::string& message) const;
     void read(const Document& document);
     void reject_unknown(const Document& document) const;
     void read_key(const Document& document, Key& key);
@@ -153,6 +158,7 @@ class TomlSchema {
 
     std::vector<Section> sections_{Section{}};
     std::vector<Key> keys_;
+    std::string file_name_;  ///< read last
 };
 
 }  // namespace steadyboom::runtime

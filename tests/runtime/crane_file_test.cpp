@@ -7,11 +7,12 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <random>
 #include <regex>
 #include <sstream>
+
+#include "tests/runtime/toml_text.hpp"
 
 namespace steadyboom::runtime {
 namespace {
@@ -24,36 +25,9 @@ using ::testing::StartsWith;
 
 const std::filesystem::path cases = STEADYBOOM_TEST_CASE_FOLDER;
 
-std::string text_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
-/// A file under the test's own temporary folder.
-class TemporaryFile {
-  public:
-    explicit TemporaryFile(const std::string& text) {
-        std::string folder = (std::filesystem::temp_directory_path() / "steadyboom-test-XXXXXX").string();
-        if (mkdtemp(folder.data()) == nullptr) {
-            throw std::runtime_error("no temporary folder");
-        }
-        folder_ = folder;
-        write(text);
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    ~TemporaryFile() { std::filesystem::remove_all(folder_); }
-    void write(const std::string& text) const { std::ofstream(path(), std::ios::binary | std::ios::trunc) << text; }
-    [[nodiscard]] std::filesystem::path path() const { return folder_ / "case-x.toml"; }
-
-  private:
-    std::filesystem::path folder_;
-};
-
 /// what() of the error that loading `text` gives, from the file name on; empty when it loads.
 std::string error_of(const std::string& text) {
-    const TemporaryFile file(text);
+    const TemporaryFile file("case-x.toml", text);
     try {
         (void)load_crane_file(file.path());
     } catch (const ConfigError& error) {
@@ -64,53 +38,6 @@ std::string error_of(const std::string& text) {
         return message.substr(folder.size());
     }
     return "";
-}
-
-/// One `key = value` line of a file.
-struct Line {
-    std::size_t number;
-    std::string section, key, value;
-    [[nodiscard]] std::string full_name() const { return section.empty() ? key : section + "." + key; }
-};
-
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);) {
-        lines.push_back(line);
-    }
-    return lines;
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-    std::string text;
-    for (const std::string& line : lines) {
-        text += line + "\n";
-    }
-    return text;
-}
-
-std::vector<Line> key_lines(const std::string& text) {
-    static const std::regex header(R"(^\[(\w+)\].*)");
-    static const std::regex key(R"(^(\w+) = ("[^"]*"|[^ #]+).*)");
-    std::vector<Line> found;
-    std::string section;
-    const std::vector<std::string> lines = lines_of(text);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        std::smatch match;
-        if (std::regex_match(lines[i], match, header)) {
-            section = match[1];
-        } else if (std::regex_match(lines[i], match, key)) {
-            found.push_back({i + 1, section, match[1], match[2]});
-        }
-    }
-    return found;
-}
-
-std::string with_value(const std::string& text, const Line& line, const std::string& value) {
-    std::vector<std::string> lines = lines_of(text);
-    lines[line.number - 1] = line.key + " = " + value;
-    return joined(lines);
 }
 
 bool identical(const CraneFile& a, const CraneFile& b) {
@@ -195,7 +122,7 @@ TEST_P(ShippedCase, HoldsTheValuesOfTableOne) {
 
 TEST_P(ShippedCase, ComesBackBitForBitFromItsOwnWriting) {
     const CraneFile file = load_crane_file(cases / (std::string(GetParam().name) + ".toml"));
-    const TemporaryFile copy(to_toml(file));
+    const TemporaryFile copy("copy.toml", to_toml(file));
     EXPECT_TRUE(identical(load_crane_file(copy.path()), file));
 }
 
@@ -311,7 +238,7 @@ TEST_F(CraneFileErrors, NameTheLineOfASyntaxError) {
 }
 
 TEST_F(CraneFileErrors, CoverFilesThatCannotBeRead) {
-    const TemporaryFile file("");
+    const TemporaryFile file("case-x.toml", "");
     const auto message = [](const std::filesystem::path& path) {
         try {
             (void)load_crane_file(path);
@@ -427,7 +354,7 @@ TEST(CraneFileWriting, RoundTripsAwkwardNumbersAndTexts) {
     file.crane.structure.track_mass_kg = std::nextafter(4e6, 5e6);
     file.crane.ropes.pendent_stiffness_N_m = 1e10;
     file.crane.actuator.leakage_m3_s_Pa = 5e-324;
-    const TemporaryFile copy(to_toml(file));
+    const TemporaryFile copy("copy.toml", to_toml(file));
     EXPECT_TRUE(identical(load_crane_file(copy.path()), file));
 }
 
@@ -443,7 +370,7 @@ TEST(CraneFileWriting, RoundTripsAnyAngleAndMismatch) {
         apply_mismatch(file, "pendent_anchor_angle_deg=" + factor.str());
         apply_mismatch(file, "car_body_angle_deg=" + factor.str());
         apply_mismatch(file, "soil.shear_modulus_Pa=" + factor.str());
-        const TemporaryFile copy(to_toml(file));
+        const TemporaryFile copy("copy.toml", to_toml(file));
         ASSERT_TRUE(identical(load_crane_file(copy.path()), file)) << factor.str();
     }
 }

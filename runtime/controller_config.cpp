@@ -1,0 +1,108 @@
+#include "runtime/controller_config.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <system_error>
+
+namespace steadyboom::runtime {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const auto law_words = [] {
+    std::array<std::pair<std::string_view, controllers::LawKind>, std::size(controllers::all_laws)> words;
+    std::transform(std::begin(controllers::all_laws), std::end(controllers::all_laws), words.begin(),
+                   [](controllers::LawKind law) {
+                       return std::pair{controllers::name_of(law), law};
+                   });
+    return words;
+}();
+
+bool is_interface_name(const std::string& text) {
+    return !text.empty() && text.size() <= 15 && text != "." && text != ".." &&
+           std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7F && c != '/' && c != ':'; });
+}
+
+bool is_absolute_file_path(const std::string& text, std::size_t longest) {
+    return text.size() >= 2 && text.size() <= longest && text.front() == '/' && text.back() != '/' &&
+           text.find('\0') == std::string::npos;
+}
+
+void declare_controller_config(TomlSchema& schema, ControllerConfig& config, std::string& crane_file) {
+    schema.text(
+        "crane_file", crane_file,
+        [](const std::string& text) { return !text.empty() && text.find('\0') == std::string::npos; },
+        "the path of a crane file, relative to this file");
+    schema.word<controllers::LawKind>("law", config.law, law_words);
+
+    schema.section("bus");
+    schema.text("interface", config.interface, is_interface_name, "a CAN interface's name of 1 to 15 characters");
+    schema.integer("bit_rate_bit_s", config.bit_rate_bit_s, 125'000, 1'000'000, "bit/s");
+    schema.rule(
+        [&config] {
+            const int rate = config.bit_rate_bit_s;
+            return rate == 125'000 || rate == 250'000 || rate == 500'000 || rate == 1'000'000;
+        },
+        "be 125000, 250000, 500000 or 1000000 bit/s");
+
+    schema.section("loop");
+    schema.number("rate_Hz", config.rate_Hz, closed(50, 2000), "Hz");
+
+    schema.section("realtime");
+    schema.integer("priority", config.realtime_priority, 0, 99);
+    schema.integer("cpu", config.realtime_cpu, -1, 1023);
+    schema.boolean("lock_memory", config.realtime_lock_memory);
+    schema.boolean("required", config.realtime_required);
+
+    schema.section("limits");
+    schema.number("max_opening_m", config.max_opening_m, closed(1e-5, 0.1), "m");
+    schema.number("max_slew_m_s", config.max_slew_m_s, closed(1e-3, 10), "m/s");
+    schema.number("engage_ramp_s", config.engage_ramp_s, closed(0.5, 10), "s");
+
+    constexpr std::size_t longest_socket_path = 107;  // sun_path
+    constexpr std::size_t longest_file_path = 4095;
+    schema.section("operator");
+    schema.text(
+        "socket_path", config.operator_socket_path,
+        [](const std::string& text) { return is_absolute_file_path(text, longest_socket_path); },
+        "an absolute path of at most 107 bytes");
+    schema.section("telemetry");
+    schema.text(
+        "ring_path", config.telemetry_ring_path,
+        [](const std::string& text) { return is_absolute_file_path(text, longest_file_path); }, "an absolute path");
+}
+
+}  // namespace
+
+std::int64_t ControllerConfig::period_ns() const noexcept {
+    return std::llround(1e9 / rate_Hz);
+}
+
+ControllerConfig load_controller_config(const fs::path& path) {
+    ControllerConfig config;
+    std::string crane_file;
+    TomlSchema schema;
+    declare_controller_config(schema, config, crane_file);
+    schema.read_file(path);
+
+    config.crane_file = fs::absolute(path.parent_path() / crane_file).lexically_normal();
+    std::error_code error;
+    schema.require("crane_file", fs::is_regular_file(config.crane_file, error),
+                   "name a crane file; there is none at " + config.crane_file.string());
+    config.crane = load_crane_file(config.crane_file);
+    schema.require("limits.max_opening_m", config.max_opening_m <= config.crane.crane.actuator.spool_travel_m,
+                   "not exceed actuator.spool_travel_m of " + config.crane_file.string());
+    return config;
+}
+
+std::string to_toml(const ControllerConfig& config) {
+    ControllerConfig copy = config;
+    std::string crane_file = config.crane_file.string();
+    TomlSchema schema;
+    declare_controller_config(schema, copy, crane_file);
+    return schema.write();
+}
+
+}  // namespace steadyboom::runtime

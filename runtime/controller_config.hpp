@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "controllers/law.hpp"
+#include "runtime/crane_file.hpp"
+
+namespace steadyboom::runtime {
+
+/// What the deployed controller and its telemetry are started with. The form of the file is documented in
+/// systemd/controller.toml; every key is required there.
+struct ControllerConfig {
+    std::filesystem::path crane_file;  ///< absolute
+    CraneFile crane;                   ///< what that file holds
+    controllers::LawKind law = controllers::LawKind::none;
+
+    std::string interface;         ///< SocketCAN
+    int bit_rate_bit_s = 500'000;  ///< of the interface, for the bus load; the interface is set up elsewhere
+    double rate_Hz = 200.0;        ///< control ticks
+
+    int realtime_priority = 80;  ///< SCHED_FIFO, 1 to 99; 0: ordinary scheduling
+    int realtime_cpu = -1;       ///< pin the control thread to it; -1: any
+    bool realtime_lock_memory = true;
+    bool realtime_required = true;  ///< end with a failure when the kernel does not grant all of it
+
+    double max_opening_m = 0.0;  ///< performance limit of the command
+    double max_slew_m_s = 0.0;   ///< performance limit of the command's rate
+    double engage_ramp_s = 0.0;  ///< authority 0 to 1 after engaging
+
+    std::string operator_socket_path;
+    std::string telemetry_ring_path;
+
+    [[nodiscard]] std::int64_t period_ns() const noexcept;  ///< of the control tick, rounded to whole ns
+};
+
+/// Reads and checks the configuration and the crane file it names. Throws ConfigError.
+[[nodiscard]] ControllerConfig load_controller_config(const std::filesystem::path& path);
+
+/// A file that load_controller_config reads back to the same values. The crane stays in its own file.
+[[nodiscard]] std::string to_toml(const ControllerConfig& config);
+
+}  // namespace steadyboom::runtime
