@@ -11,8 +11,8 @@
 namespace steadyboom::drivers {
 
 struct SocketCanOptions {
-    std::vector<CanFilter> filters;  ///< in the kernel; empty lets everything through
-    bool error_messages = true;      ///< deliver the interface's error messages as frames with `error` set
+    std::vector<CanFilter> filters = {};  ///< in the kernel; empty lets everything through
+    bool error_messages = true;           ///< deliver the interface's error messages as frames with `error` set
     /// Asked of SO_RCVBUFFORCE, else of SO_RCVBUF (then cut to net.core.rmem_max). The kernel's default holds 278
     /// frames.
     int receive_buffer_bytes = 4 * 1024 * 1024;
