@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "runtime/file_descriptor.hpp"
 #include "runtime/operator_protocol.hpp"
 
 namespace steadyboom::runtime {
@@ -14,9 +15,6 @@ class OperatorClient {
     /// Connects, trying again until `patience` is over. Throws std::runtime_error naming the path and the remedy.
     explicit OperatorClient(const std::filesystem::path& path,
                             std::chrono::milliseconds patience = std::chrono::milliseconds(0));
-    ~OperatorClient();
-    OperatorClient(const OperatorClient&) = delete;
-    OperatorClient& operator=(const OperatorClient&) = delete;
 
     /// Sends one command and waits for its reply. Throws std::runtime_error when the controller closes the connection,
     /// does not reply within `timeout`, or speaks another protocol.
@@ -27,7 +25,8 @@ class OperatorClient {
     OperatorReply arm_and_engage();
 
   private:
-    int socket_ = -1;
+    std::filesystem::path path_;
+    FileDescriptor socket_;
 };
 
 }  // namespace steadyboom::runtime

@@ -45,7 +45,7 @@ struct OperatorSocketOptions {
 
 struct OperatorSocketCounters {
     std::uint64_t accepted_connections = 0;
-    std::uint64_t rejected_connections = 0;  ///< no room
+    std::uint64_t replaced_connections = 0;  ///< closed to make room
     std::uint64_t messages = 0;
     std::uint64_t malformed = 0;
     std::uint64_t rate_limited = 0;

@@ -124,40 +124,19 @@ void schedule(const RealtimeOptions& options, RealtimeGrant& grant) {
     }
 }
 
-int hold_dma_latency(RealtimeGrant& grant) {
-    const int file = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+FileDescriptor hold_dma_latency(RealtimeGrant& grant) {
+    FileDescriptor file(open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC));
     const std::int32_t latency_us = 0;
-    const bool held = file >= 0 && write(file, &latency_us, sizeof latency_us) == sizeof latency_us;
-    if (!held) {
-        const int error = errno;
-        if (file >= 0) {
-            close(file);
-        }
-        grant.refusals.push_back({"/dev/cpu_dma_latency", words(error),
+    if (!file.is_open() || write(file.get(), &latency_us, sizeof latency_us) != sizeof latency_us) {
+        grant.refusals.push_back({"/dev/cpu_dma_latency", words(errno),
                                   "let the user write it (DeviceAllow=, udev), or accept wake-ups a few times later"});
-        return -1;
+        return {};
     }
     grant.dma_latency_held = true;
     return file;
 }
 
 }  // namespace
-
-RealtimeGrant::RealtimeGrant(RealtimeGrant&& other) noexcept
-    : policy(other.policy),
-      priority(other.priority),
-      cpu(other.cpu),
-      locked_memory_bytes(other.locked_memory_bytes),
-      throttle_runtime_us(other.throttle_runtime_us),
-      dma_latency_held(other.dma_latency_held),
-      refusals(std::move(other.refusals)),
-      dma_latency_file_(std::exchange(other.dma_latency_file_, -1)) {}
-
-RealtimeGrant::~RealtimeGrant() {
-    if (dma_latency_file_ >= 0) {
-        close(dma_latency_file_);
-    }
-}
 
 std::string RealtimeGrant::summary() const {
     std::ostringstream line;

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "runtime/file_descriptor.hpp"
+
 namespace steadyboom::runtime {
 
 enum class SchedulingPolicy { other, fifo };
@@ -37,11 +39,6 @@ struct RealtimeRefusal {
 /// /dev/cpu_dma_latency open.
 class RealtimeGrant {
   public:
-    RealtimeGrant() = default;
-    RealtimeGrant(RealtimeGrant&& other) noexcept;
-    RealtimeGrant& operator=(RealtimeGrant&&) = delete;
-    ~RealtimeGrant();
-
     SchedulingPolicy policy = SchedulingPolicy::other;  ///< in effect
     int priority = 0;                                   ///< in effect
     std::optional<int> cpu;                             ///< the only CPU the thread may run on
@@ -57,7 +54,7 @@ class RealtimeGrant {
 
   private:
     friend RealtimeGrant become_realtime(const RealtimeOptions& options);
-    int dma_latency_file_ = -1;
+    FileDescriptor dma_latency_file_;
 };
 
 /// Makes the calling thread the real-time one: pins it, keeps freed memory in the process, locks and prefaults memory,

@@ -12,27 +12,13 @@
 #include <system_error>
 #include <utility>
 
+#include "runtime/file_descriptor.hpp"
+
 namespace steadyboom::runtime {
 
 namespace {
 
 constexpr std::size_t alignment_bytes = alignof(TickRingHeader);
-
-class File {
-  public:
-    explicit File(int descriptor) noexcept : descriptor_(descriptor) {}
-    ~File() {
-        if (descriptor_ >= 0) {
-            close(descriptor_);
-        }
-    }
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
-    [[nodiscard]] int get() const noexcept { return descriptor_; }
-
-  private:
-    int descriptor_;
-};
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
     throw std::runtime_error("tick ring " + path.string() + ": " + what);
@@ -112,7 +98,7 @@ TickRingMemory TickRingMemory::create_file(const std::filesystem::path& path, co
     const std::size_t bytes = bytes_needed(options.capacity_records, shape);
     const std::filesystem::path temporary = path.string() + "." + std::to_string(getpid()) + ".new";
     unlink(temporary.c_str());
-    const File file(open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+    const FileDescriptor file(open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
     if (file.get() < 0) {
         fail(path, "cannot create it: " + words(errno) + "; make its folder and let this user write there");
     }
@@ -143,7 +129,7 @@ TickRingMemory TickRingMemory::create_file(const std::filesystem::path& path, co
 }
 
 TickRingMemory TickRingMemory::open_file(const std::filesystem::path& path, const Shape& shape) {
-    const File file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     struct stat facts {};
     if (file.get() < 0 || fstat(file.get(), &facts) != 0) {
         fail(path, "cannot open it: " + words(errno) + "; start the program that writes it, or name another path");
