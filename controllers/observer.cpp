@@ -32,14 +32,14 @@ CraneState model_step(const CraneDynamics& model, const CraneState& state, doubl
 /// alone is 1 to 2.5 m/s), unmodelled soil, valve and spool.
 CraneState process_sigma() {
     CraneState sigma = CraneState::Constant(1e-5);
-    sigma[velocity_offset + R1_m] = 5e-2;
-    sigma[velocity_offset + phi2_rad] = 1e-2;
+    sigma[velocity_offset + R1_m] = 1e-2;
+    sigma[velocity_offset + phi2_rad] = 2e-3;
     sigma[velocity_offset + R9_m] = 2.0;
-    sigma[velocity_offset + q1_m] = 5e-2;
-    sigma[velocity_offset + q2_m] = 5e-2;
-    sigma[velocity_offset + phi6_rad] = 1e-2;
-    sigma[velocity_offset + phi9_rad] = 1e-2;
-    sigma[piston_index] = 1e-3;
+    sigma[velocity_offset + q1_m] = 1e-2;
+    sigma[velocity_offset + q2_m] = 1e-2;
+    sigma[velocity_offset + phi6_rad] = 2e-3;
+    sigma[velocity_offset + phi9_rad] = 2e-3;
+    sigma[piston_index] = 2e-3;
     return sigma;
 }
 
@@ -123,9 +123,13 @@ void Observer::correct(const CraneMeasurement& measured) noexcept {
     estimate_.finite = estimate_.state.allFinite();
 }
 
-void Observer::predict(double applied_opening_m) noexcept {
-    estimate_.state = model_step(model_, estimate_.state, applied_opening_m, step_s_, substeps_);
+void Observer::predict(double opening_m) noexcept {
+    estimate_.state = model_step(model_, estimate_.state, opening_m, step_s_, substeps_);
     estimate_.finite = estimate_.state.allFinite();
+}
+
+CraneState Observer::ahead(double opening_m, double lead_s) const noexcept {
+    return model_step(model_, estimate_.state, opening_m, lead_s / substeps_, substeps_);
 }
 
 CraneState Observer::prior_sigma() const noexcept { return prior_.diagonal().cwiseSqrt(); }

@@ -24,8 +24,8 @@ struct ObserverConfig {
 /// the model and a tension of zero on the sensor agree and correct nothing. Line length and spool are not corrected
 /// with: the one is a parameter of the model, the other follows the command within a tick.
 ///
-/// Assumptions: the model's valve follows the command at once; process noise (observer.cpp) covers spool lag, the
-/// brake's shock and moderate parameter errors.
+/// Assumptions: the model's valve is linear and follows the command at once; process noise (observer.cpp) covers spool
+/// lag, the brake's shock and moderate parameter errors.
 class Observer {
   public:
     /// Starts at rest at `equilibrium` of the embedded model. Throws std::invalid_argument for a bad configuration and
@@ -35,8 +35,11 @@ class Observer {
     /// Takes in the samples of the instant that the newest state belongs to. Channels that are not fresh are left out.
     void correct(const plant::CraneMeasurement& measured) noexcept;
 
-    /// Moves the state on by one period with the opening that was applied during it, m.
-    void predict(double applied_opening_m) noexcept;
+    /// Moves the state on by one period with the opening of a linear valve that gives the flow applied during it, m.
+    void predict(double opening_m) noexcept;
+
+    /// The newest state moved on by `lead_s` with a linear-valve opening of `opening_m`; changes nothing.
+    [[nodiscard]] plant::CraneState ahead(double opening_m, double lead_s) const noexcept;
 
     [[nodiscard]] const CraneEstimate& estimate() const noexcept { return estimate_; }
 

@@ -1,6 +1,7 @@
 #include "runtime/control_tick.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "plant/sensors.hpp"
 #include "runtime/realtime_section.hpp"
@@ -23,6 +24,14 @@ plant::SensorVector observed_sigma(const plant::CraneParameters& crane, const dr
         }
     }
     return variance.cwiseSqrt();
+}
+
+/// From a command to the middle of its effect: half a tick that it is held, the valve's dead time, and the delay of a
+/// second-order spool at low frequency, 2 zeta / omega.
+double actuation_lag_s(const ControlTickConfig& config) {
+    const plant::ActuatorParameters& actuator = config.crane.actuator;
+    return 0.5 * period_s(config) + actuator.spool_delay_s +
+           actuator.spool_damping_ratio / (std::numbers::pi * actuator.spool_bandwidth_Hz);
 }
 
 OperatorIntent intent_of(OperatorCommand command) noexcept {
@@ -52,6 +61,8 @@ ControlTick::ControlTick(const ControlTickConfig& config, drivers::CanBus& bus, 
                 {.period_s = period_s(config), .sensor_sigma = observed_sigma(config.crane, network_.table())}),
       interlock_({.period_s = period_s(config), .engage_ramp_s = config.engage_ramp_s}),
       law_(config.law, config.gains, equilibrium_.state),
+      linearisation_(config.crane.actuator),
+      actuation_lag_s_(actuation_lag_s(config)),
       limiter_({.max_opening_m = config.max_opening_m,
                 .max_slew_m_s = config.max_slew_m_s,
                 .period_s = period_s(config)}),
@@ -105,14 +116,16 @@ void ControlTick::run(const TickStart& start) noexcept {
     observer_.correct(measured);
     r.observe_duration_ns = lap_ns();
 
-    observer_.predict(applied_opening_m_);
+    observer_.predict(applied_linear_m_);
     const controllers::CraneEstimate& estimate = observer_.estimate();
     r.predict_duration_ns = lap_ns();
 
     const plant::Permission permit = interlock_.evaluate(measured, estimate, health_, next_intent());
     r.interlock_duration_ns = lap_ns();
 
-    const plant::ValveCommand wanted = law_.command(estimate.state);
+    const double load_pressure_Pa = crane_.outputs(estimate.state).load_pressure_Pa;
+    const plant::ValveCommand linear = law_.command(observer_.ahead(applied_linear_m_, actuation_lag_s_));
+    const plant::ValveCommand wanted = linearisation_.spool_command(linear, load_pressure_Pa);
     r.law_duration_ns = lap_ns();
 
     const plant::LimitedCommand limited = limiter_.apply(wanted, permit);
@@ -123,7 +136,7 @@ void ControlTick::run(const TickStart& start) noexcept {
     const drivers::SendResult sent = bus_.send(out);
     health_.send_failed = sent.sent != out.size();
     health_.guard_violated = applied.violated();
-    applied_opening_m_ = applied.opening_m();
+    applied_linear_m_ = linearisation_.linear_opening_m(applied.opening_m(), load_pressure_Pa);
     r.send_duration_ns = lap_ns();
 
     const drivers::BusStatus bus = bus_.status();

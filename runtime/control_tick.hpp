@@ -1,11 +1,14 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 
 #include "controllers/interlock.hpp"
 #include "controllers/law.hpp"
 #include "controllers/limiter.hpp"
 #include "controllers/observer.hpp"
+#include "controllers/valve_linearisation.hpp"
 #include "drivers/can_bus.hpp"
 #include "drivers/command_guard.hpp"
 #include "drivers/crane_network.hpp"
@@ -32,11 +35,12 @@ struct ControlTickConfig {
 
 /// One control tick, the heart of the program: frames in, estimate, permission, command, frames out, record.
 ///
-///     read -> decode -> correct, predict -> interlock -> law -> limiter -> guard -> send -> record
+///     read -> decode -> correct, predict -> interlock -> law, valve -> limiter -> guard -> send -> record
 ///
 /// SYNC leaves with the command at the end of tick k, sensors sample on it, and what is read in tick k+1 belongs to
-/// t_k. So the observer corrects x(t_k) with it and predicts x(t_k+1) with the command that was applied in between; the
-/// law acts on the crane as it is now, not as it was one tick ago (docs/decisions.md).
+/// t_k. So the observer corrects x(t_k) with it and predicts x(t_k+1) with the command that was applied in between. The
+/// law sees the crane as it will be when the spool has followed, and speaks in openings of a linear valve, which become
+/// openings of the real one (docs/decisions.md).
 ///
 /// Constructing allocates and may throw (plant::EquilibriumError, std::invalid_argument); run() does neither.
 class ControlTick {
@@ -72,12 +76,14 @@ class ControlTick {
     controllers::Observer observer_;
     controllers::Interlock interlock_;
     controllers::Law law_;
+    controllers::ValveLinearisation linearisation_;
+    double actuation_lag_s_;
     controllers::Limiter limiter_;
     drivers::CommandGuard guard_;
     OverrunMonitor overruns_;
 
     controllers::Health health_;
-    double applied_opening_m_ = 0.0;  ///< by the previous tick, in force since then
+    double applied_linear_m_ = 0.0;  ///< linear-valve opening of the previous tick's flow, in force since then
     std::optional<OperatorRequest> request_;
     std::int64_t lap_start_ns_ = 0;
     std::array<drivers::CanFrame, most_frames> frames_;
