@@ -276,6 +276,14 @@ TEST_F(CraneNetworkTest, JitterOfTheTickDoesNotSlowTheHeartbeat) {
     EXPECT_EQ(heartbeats, 100);
 }
 
+TEST_F(CraneNetworkTest, ClockMayStartBelowZero) {
+    now_ns_ = -5'000'000'000;
+    EXPECT_EQ(encode(guard_.neutral()).front().id, 0x701U);
+    EXPECT_EQ(encode(guard_.neutral()).front().id, 0x000U);
+    now_ns_ += heartbeat_interval_ns;
+    EXPECT_EQ(encode(guard_.neutral()).front().id, 0x701U);
+}
+
 TEST_F(CraneNetworkTest, RestartedNodesAreStartedOneATick) {
     settle();
     (void)decode({heartbeat(Message::valve_heartbeat, NodeState::boot_up),

@@ -72,6 +72,19 @@ TEST_F(DeviceNetworkTest, NodesAnnounceThemselvesAndWaitToBeStarted) {
     }
 }
 
+TEST_F(DeviceNetworkTest, HeartbeatsKeepTheirPaceOnALateClockAndSkipWhatWasSleptThrough) {
+    (void)housekeeping();
+    std::size_t heartbeats = 0;
+    for (int tick = 0; tick < 2000; ++tick) {
+        now_ns_ = tick * 5'000'000LL + tick % 3 * 100'000;
+        heartbeats += housekeeping().size();
+    }
+    EXPECT_EQ(heartbeats, 7U * 99U);
+    now_ns_ += 10'000'000'000;
+    EXPECT_EQ(housekeeping().size(), 7U);
+    EXPECT_TRUE(housekeeping().empty());
+}
+
 TEST_F(DeviceNetworkTest, StartBeforeTheBootUpMessageIsNotHeard) {
     receive({nmt(0x01, 0)});
     (void)housekeeping();
