@@ -49,7 +49,7 @@ std::string known_cases() {
 fs::path find_case(std::string_view name_or_path) {
     std::error_code error;
     const fs::path given(name_or_path);
-    if (!name_or_path.empty() && !given.has_parent_path()) {
+    if (!given.has_parent_path()) {
         for (const fs::path& folder : case_folders()) {
             const fs::path file = folder / (std::string(name_or_path) + ".toml");
             if (fs::is_regular_file(file, error)) {

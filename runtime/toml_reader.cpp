@@ -17,6 +17,8 @@ namespace steadyboom::runtime {
 namespace {
 
 constexpr std::size_t largest_file_bytes = 1U << 20U;
+// A dotted key nests one table a dot, and the parser's tables are freed recursively: this bounds the depth.
+constexpr std::size_t longest_line_bytes = 8192;
 constexpr std::size_t longest_shown_text = 60;
 
 std::string printable(std::string_view text) {
@@ -148,8 +150,7 @@ std::string read_whole_file(const std::filesystem::path& path) {
 ConfigError::ConfigError(std::string_view message) : std::runtime_error(printable(message)) {}
 
 bool Range::contains(double value) const noexcept {
-    return std::isfinite(value) && (low_open ? value > low : value >= low) &&
-           (high_open ? value < high : value <= high);
+    return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
 }
 
 std::string Range::text() const {
@@ -214,6 +215,14 @@ void TomlSchema::read_file(const std::filesystem::path& path) {
 
 void TomlSchema::read_text(std::string_view toml, std::string_view file_name) {
     file_name_ = file_name;
+    std::size_t line = 1;
+    for (std::size_t start = 0; start < toml.size(); ++line) {
+        const std::size_t end = std::min(toml.find('\n', start), toml.size());
+        if (end - start > longest_line_bytes) {
+            fail(line, "is longer than " + std::to_string(longest_line_bytes) + " bytes, so this is no configuration");
+        }
+        start = end + 1;
+    }
     try {
         const toml::table root = toml::parse(toml, file_name);
         read({root});

@@ -20,7 +20,7 @@ class ConfigError : public std::runtime_error {
     explicit ConfigError(std::string_view message);
 };
 
-/// Allowed values of a number, in the unit of the file. Never contains NaN or infinity.
+/// Allowed values of a number, in the unit of the file. Both bounds are finite, so it contains no NaN or infinity.
 struct Range {
     double low = 0.0;
     double high = 0.0;

@@ -110,7 +110,7 @@ TEST_P(ShippedCase, HoldsTheValuesOfTableOne) {
     EXPECT_EQ(a.discharge_coefficient, 0.61);
     EXPECT_EQ(a.oil_density_kg_m3, 850.0);
     EXPECT_EQ(a.spool_diameter_m, 1.24e-2);
-    EXPECT_EQ(a.spool_bandwidth_Hz, 60.0);
+    EXPECT_EQ(a.spool_bandwidth_Hz, 100.0);
     EXPECT_EQ(a.spool_damping_ratio, 0.8);
     EXPECT_EQ(a.spool_delay_s, 0.001);
 
@@ -252,6 +252,19 @@ TEST_F(CraneFileErrors, CoverFilesThatCannotBeRead) {
     EXPECT_THAT(message("/dev/zero"), HasSubstr("larger than 1 MiB"));
 }
 
+TEST_F(CraneFileErrors, CoverNestingThatWouldExhaustTheStack) {
+    std::string dotted;
+    for (int depth = 0; depth < 100'000; ++depth) {
+        dotted += "a.";
+    }
+    EXPECT_EQ(error_of("\n" + dotted + "a = 1\n"),
+              "case-x.toml:2: is longer than 8192 bytes, so this is no configuration");
+    EXPECT_EQ(error_of("[" + dotted + "a]\n"), "case-x.toml:1: is longer than 8192 bytes, so this is no configuration");
+    EXPECT_THAT(error_of("[" + dotted.substr(0, 8000) + "a]\n" + dotted.substr(0, 8000) + "a = 1\n"),
+                HasSubstr("[a]: unknown section"));
+    EXPECT_THAT(error_of("a = " + std::string(8000, '[')), HasSubstr("not valid TOML: "));
+}
+
 TEST_F(CraneFileErrors, CatchValuesThatContradictEachOther) {
     EXPECT_THAT(error_of(with_value(text, line("pendent_anchor_angle_deg"), "-25")),
                 HasSubstr(": crane.pendent_anchor_angle_deg = -25.0: must keep the angle between boom and anchor"));
@@ -321,7 +334,7 @@ TEST_F(CaseText, GarbageNeverGetsPastAsAnythingButAConfigError) {
     constexpr std::size_t trials = 600;
     for (std::size_t trial = 0; trial < trials; ++trial) {
         std::string garbage = text;
-        for (std::size_t change = 0, changes = 1 + below_bound(8); change < changes; ++change) {
+        for (std::size_t change = 1 + below_bound(8); change > 0 && !garbage.empty(); --change) {
             const std::size_t at = below_bound(garbage.size());
             switch (below_bound(5)) {
                 case 0:
