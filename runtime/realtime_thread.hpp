@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -32,6 +33,7 @@ struct RealtimeRefusal {
     std::string what;    ///< for example "SCHED_FIFO priority 80"
     std::string reason;  ///< the kernel's errno in words, or what was found instead
     std::string remedy;  ///< what the one who runs the machine can do
+    bool essential;      ///< the loop's timing cannot be relied on without it
     [[nodiscard]] std::string message() const { return what + " refused: " + reason + "; " + remedy; }
 };
 
@@ -47,8 +49,8 @@ class RealtimeGrant {
     bool dma_latency_held = false;
     std::vector<RealtimeRefusal> refusals;  ///< everything asked for and not granted; the caller logs each
 
-    /// Scheduling and memory, which determinism stands on, were granted as asked.
-    [[nodiscard]] bool complete() const noexcept { return refusals.empty(); }
+    /// Nothing essential was refused: policy, priority, CPU and memory are as asked.
+    [[nodiscard]] bool complete() const noexcept;
     /// One line for the log.
     [[nodiscard]] std::string summary() const;
 
@@ -66,8 +68,8 @@ class RealtimeGrant {
 /// whole), and all signals blocked, so that they reach the main thread. Joined, after a stop request, at destruction.
 class HelperThread {
   public:
-    /// Throws std::system_error when no thread can be made. `name` shows in ps, 15 characters at most. `work` must not
-    /// throw.
+    /// Throws std::system_error when no thread can be made or it cannot be made ordinary. `name` shows in ps, 15
+    /// characters at most. `work` must not throw.
     HelperThread(const std::string& name, std::function<void(std::stop_token)> work);
     ~HelperThread();
     HelperThread(const HelperThread&) = delete;
@@ -81,6 +83,7 @@ class HelperThread {
     std::string name_;
     std::function<void(std::stop_token)> work_;
     std::stop_source stop_;
+    std::atomic<int> start_error_{-1};  ///< -1: not started yet
     pthread_t thread_{};
 };
 

@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     app.fallthrough();
 
-    std::string path = "/run/steadyboom/operator.sock";
+    std::string path = "/run/steadyboom/command.sock";
     bool json = false;
     app.add_option("--socket", path, "The controller's operator socket")->capture_default_str();
     app.add_flag("--json", json, "Print the reply as JSON");

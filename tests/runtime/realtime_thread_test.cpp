@@ -106,14 +106,28 @@ TEST(BecomeRealtime, WhatTheGrantSaysIsWhatTheKernelSays) {
 
         sched_param effective{};
         sched_getparam(0, &effective);
-        EXPECT_EQ(grant.policy == SchedulingPolicy::fifo, sched_getscheduler(0) == SCHED_FIFO);
+        const bool is_fifo = sched_getscheduler(0) == (SCHED_FIFO | SCHED_RESET_ON_FORK);
+        EXPECT_EQ(grant.policy == SchedulingPolicy::fifo, is_fifo);
         EXPECT_EQ(grant.priority, effective.sched_priority);
-        EXPECT_EQ(refusal_of(grant, "SCHED_FIFO") == nullptr, sched_getscheduler(0) == SCHED_FIFO);
+        EXPECT_EQ(refusal_of(grant, "SCHED_FIFO") == nullptr, is_fifo);
         EXPECT_EQ(refusal_of(grant, "locking memory") == nullptr, grant.locked_memory_bytes > 0);
         ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
         EXPECT_EQ(grant.cpu, cpu);
         EXPECT_EQ(CPU_COUNT(&allowed), 1);
         EXPECT_LE(grant.locked_memory_bytes, 16U * 1024 * 1024);
+    });
+}
+
+TEST(BecomeRealtime, WhatItsUnitGaveItAlreadyCountsWhereAskingForItIsForbidden) {
+    in_own_process([] {
+        sched_param before{};
+        before.sched_priority = 12;
+        const bool given = sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &before) == 0;
+        give_up_rights();
+        const RealtimeGrant grant = become_realtime({.priority = 12, .lock_memory = false, .hold_dma_latency = false});
+        EXPECT_EQ(grant.complete(), given);
+        EXPECT_EQ(grant.priority, given ? 12 : 0);
+        EXPECT_FALSE(become_realtime({.priority = 13, .lock_memory = false}).complete());
     });
 }
 
