@@ -83,6 +83,9 @@ std::int64_t ControlTick::lap_ns() noexcept {
 
 OperatorIntent ControlTick::next_intent() noexcept {
     request_ = mailbox_.try_pop();
+    if (stopping_) {
+        return OperatorIntent::stop;
+    }
     return request_ ? intent_of(request_->command) : OperatorIntent::none;
 }
 

@@ -51,6 +51,9 @@ class ControlTick {
 
     void run(const TickStart& start) noexcept;
 
+    /// From now on the operator's stop is in force, whatever else is asked: for the end of the program.
+    void request_stop() noexcept { stopping_ = true; }
+
     /// Of the newest tick.
     [[nodiscard]] const TickRecord& record() const noexcept { return record_; }
     [[nodiscard]] const plant::Equilibrium& equilibrium() const noexcept { return equilibrium_; }
@@ -85,6 +88,7 @@ class ControlTick {
     controllers::Health health_;
     double applied_linear_m_ = 0.0;  ///< linear-valve opening of the previous tick's flow, in force since then
     std::optional<OperatorRequest> request_;
+    bool stopping_ = false;
     std::int64_t lap_start_ns_ = 0;
     std::array<drivers::CanFrame, most_frames> frames_;
     TickRecord record_;

@@ -25,6 +25,9 @@ bool is_interface_name(const std::string& text) {
            std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7F && c != '/' && c != ':'; });
 }
 
+constexpr std::size_t longest_socket_path = 107;  // sun_path
+constexpr std::size_t longest_file_path = 4095;
+
 bool is_absolute_file_path(const std::string& text, std::size_t longest) {
     return text.size() >= 2 && text.size() <= longest && text.front() == '/' && text.back() != '/' &&
            text.find('\0') == std::string::npos;
@@ -38,17 +41,9 @@ void declare_controller_config(TomlSchema& schema, ControllerConfig& config, std
     schema.word<controllers::LawKind>("law", config.law, law_words);
 
     schema.section("bus");
-    schema.text("interface", config.interface, is_interface_name, "a CAN interface's name of 1 to 15 characters");
-    schema.integer("bit_rate_bit_s", config.bit_rate_bit_s, 125'000, 1'000'000, "bit/s");
-    schema.rule(
-        [&config] {
-            const int rate = config.bit_rate_bit_s;
-            return rate == 125'000 || rate == 250'000 || rate == 500'000 || rate == 1'000'000;
-        },
-        "be 125000, 250000, 500000 or 1000000 bit/s");
-
+    declare_bus(schema, config.interface, config.bit_rate_bit_s);
     schema.section("loop");
-    schema.number("rate_Hz", config.rate_Hz, closed(50, 2000), "Hz");
+    declare_rate(schema, config.rate_Hz);
 
     schema.section("realtime");
     schema.integer("priority", config.realtime_priority, 0, 99);
@@ -61,20 +56,37 @@ void declare_controller_config(TomlSchema& schema, ControllerConfig& config, std
     schema.number("max_slew_m_s", config.max_slew_m_s, closed(1e-3, 10), "m/s");
     schema.number("engage_ramp_s", config.engage_ramp_s, closed(0.5, 10), "s");
 
-    constexpr std::size_t longest_socket_path = 107;  // sun_path
-    constexpr std::size_t longest_file_path = 4095;
     schema.section("operator");
     schema.text(
         "socket_path", config.operator_socket_path,
         [](const std::string& text) { return is_absolute_file_path(text, longest_socket_path); },
         "an absolute path of at most 107 bytes");
     schema.section("telemetry");
-    schema.text(
-        "ring_path", config.telemetry_ring_path,
-        [](const std::string& text) { return is_absolute_file_path(text, longest_file_path); }, "an absolute path");
+    declare_ring_path(schema, config.telemetry_ring_path);
 }
 
 }  // namespace
+
+void declare_bus(TomlSchema& schema, std::string& interface, int& bit_rate_bit_s) {
+    schema.text("interface", interface, is_interface_name, "a CAN interface's name of 1 to 15 characters");
+    schema.integer("bit_rate_bit_s", bit_rate_bit_s, 125'000, 1'000'000, "bit/s");
+    schema.rule(
+        [&bit_rate_bit_s] {
+            const int rate = bit_rate_bit_s;
+            return rate == 125'000 || rate == 250'000 || rate == 500'000 || rate == 1'000'000;
+        },
+        "be 125000, 250000, 500000 or 1000000 bit/s");
+}
+
+void declare_rate(TomlSchema& schema, double& rate_Hz) {
+    schema.number("rate_Hz", rate_Hz, closed(50, 2000), "Hz");
+}
+
+void declare_ring_path(TomlSchema& schema, std::string& ring_path) {
+    schema.text(
+        "ring_path", ring_path, [](const std::string& text) { return is_absolute_file_path(text, longest_file_path); },
+        "an absolute path");
+}
 
 std::int64_t ControllerConfig::period_ns() const noexcept {
     return std::llround(1e9 / rate_Hz);

@@ -38,6 +38,11 @@ struct ControllerConfig {
 /// Reads and checks the configuration and the crane file it names. Throws ConfigError.
 [[nodiscard]] ControllerConfig load_controller_config(const std::filesystem::path& path);
 
+/// Declare keys that other programs on the same bus have too, for the section that was declared last.
+void declare_bus(TomlSchema& schema, std::string& interface, int& bit_rate_bit_s);
+void declare_rate(TomlSchema& schema, double& rate_Hz);
+void declare_ring_path(TomlSchema& schema, std::string& ring_path);
+
 /// A file that load_controller_config reads back to the same values. The crane stays in its own file.
 [[nodiscard]] std::string to_toml(const ControllerConfig& config);
 

@@ -1,0 +1,148 @@
+// steadyboom-plant: the virtual crane as a real-time process of its own on a SocketCAN interface.
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "drivers/socketcan_bus.hpp"
+#include "hil/plant_config.hpp"
+#include "hil/plant_record.hpp"
+#include "hil/virtual_crane.hpp"
+#include "runtime/periodic_loop.hpp"
+#include "runtime/realtime_thread.hpp"
+#include "runtime/tick_ring.hpp"
+#include "runtime/toml_reader.hpp"
+
+namespace {
+
+using namespace steadyboom;
+
+constexpr int exit_done = 0;
+constexpr int exit_failed = 1;
+constexpr int exit_bad_input = 2;
+
+/// The crane moves in steps of step_ns and looks at the bus every wake_ns; a SYNC waits no longer than that.
+constexpr std::int64_t step_ns = 500'000;
+constexpr std::int64_t wake_ns = 1'000'000;
+/// Time that may be caught up with at once after a late wake-up. Beyond it the crane has lost real time.
+constexpr std::uint64_t most_wakes_behind = 200;
+
+std::atomic<bool> stop_requested{false};
+
+void request_stop(int) { stop_requested.store(true, std::memory_order_relaxed); }
+
+hil::PlantRecord record_of(const hil::TruthSample& truth, std::uint64_t step, std::int64_t time_ns,
+                           std::uint64_t valve_timeouts) {
+    hil::PlantRecord record{.step = step,
+                            .time_ns = time_ns,
+                            .t_s = truth.t_s,
+                            .spool_m = truth.spool_m,
+                            .pendent_tension_N = truth.pendent_tension_N,
+                            .load_line_tension_N = truth.load_line_tension_N,
+                            .chord_m = truth.chord_m,
+                            .contact_fraction = truth.contact_fraction,
+                            .load_pressure_Pa = truth.load_pressure_Pa,
+                            .hydraulic_power_W = truth.hydraulic_power_W,
+                            .valve_timeouts = valve_timeouts};
+    std::copy(truth.state.begin(), truth.state.end(), record.state.begin());
+    return record;
+}
+
+int stand_in_for_the_crane(const hil::PlantConfig& config) {
+    hil::VirtualCrane crane({.crane = config.crane_case.crane,
+                             .network = {.spool_travel_m = config.crane_case.crane.actuator.spool_travel_m,
+                                         .period_ns = std::llround(1e9 / config.rate_Hz),
+                                         .bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s)},
+                             .step_s = 1e-9 * static_cast<double>(step_ns),
+                             .seed = static_cast<std::uint64_t>(config.seed)});
+    drivers::SocketCanBus bus(config.interface, {.filters = crane.network().filters()});
+    runtime::TickRingWriter<hil::PlantRecord> ring(config.ring_path,
+                                                   {.capacity_records = 1 << 15, .period_ns = step_ns});
+
+    const auto standing_steps = std::llround(config.standing_s * 1e9 / static_cast<double>(step_ns));
+    const auto last_step = standing_steps + std::llround(config.duration_s * 1e9 / static_cast<double>(step_ns));
+    const auto t_s = [&](std::int64_t step) {
+        return 1e-9 * static_cast<double>((step - standing_steps) * step_ns);
+    };
+
+    const runtime::RealtimeGrant grant = runtime::become_realtime(
+        {.policy = config.realtime_priority > 0 ? runtime::SchedulingPolicy::fifo : runtime::SchedulingPolicy::other,
+         .priority = config.realtime_priority,
+         .cpu = config.realtime_cpu >= 0 ? std::optional(config.realtime_cpu) : std::nullopt});
+    for (const runtime::RealtimeRefusal& refusal : grant.refusals) {
+        spdlog::warn("not real-time: {}", refusal.message());
+    }
+
+    runtime::MonotonicClock clock;
+    const std::int64_t epoch_ns = clock.now_ns() + wake_ns;
+    runtime::PeriodicLoop loop(clock, wake_ns, epoch_ns);
+    spdlog::info("{} on {}: brake event {} s from now, end {} s after it; {}", config.crane_case.name,
+                 config.interface, config.standing_s, config.duration_s, grant.summary());
+    std::array<drivers::CanFrame, 512> frames;
+    std::int64_t step = 0;
+    ring.push(record_of(crane.truth(t_s(0)), 0, epoch_ns, 0));
+    while (step < last_step && !stop_requested.load(std::memory_order_relaxed)) {
+        const runtime::TickStart start = loop.wait();
+        if (start.skipped_ticks > most_wakes_behind) {
+            spdlog::error("lost real time: the machine gave this process no time for {} ms",
+                          static_cast<double>(start.skipped_ticks) * 1e-6 * static_cast<double>(wake_ns));
+            return exit_failed;
+        }
+        // First what moved until now, then what came: frames take effect at the instant they are read.
+        for (; step < last_step && epoch_ns + (step + 1) * step_ns <= start.due_ns; ++step) {
+            if (step == standing_steps) {
+                crane.brake(config.crane_case.manoeuvre.brake_rate_m_s());
+            }
+            crane.advance(epoch_ns + step * step_ns);
+            ring.push(record_of(crane.truth(t_s(step + 1)), static_cast<std::uint64_t>(step + 1),
+                                epoch_ns + (step + 1) * step_ns, crane.valve().timeouts()));
+        }
+        const std::size_t count = bus.receive(frames);
+        crane.receive({frames.data(), count}, start.due_ns);
+        bus.send(crane.frames_to_send(start.due_ns));
+        loop.finish();
+    }
+    const drivers::BusStatus status = bus.status();
+    spdlog::info("ended at t = {} s; {} frames received, {} sent, {} lost; valve timed out {} times; {} late wake-ups",
+                 t_s(step), status.received_frames, status.sent_frames,
+                 status.send_dropped_frames + status.receive_overflow_frames, crane.valve().timeouts(),
+                 loop.statistics().overruns.load());
+    return exit_done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("The virtual crane on a CAN interface: devices, sensors, valve and the true crane behind them.\n"
+                 "Exit codes: 0 done or stopped by SIGTERM or SIGINT, 1 failed, 2 bad input.",
+                 "steadyboom-plant");
+    app.set_version_flag("--version", "steadyboom-plant " STEADYBOOM_VERSION);
+    std::string path;
+    app.add_option("--config", path, "Configuration file; its form: hil/plant.toml")->required();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? exit_done : exit_bad_input;
+    }
+
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("steadyboom-plant"));
+    spdlog::set_pattern("%n: %l: %v");
+    struct sigaction action {};
+    action.sa_handler = request_stop;
+    sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGINT, &action, nullptr);
+    try {
+        return stand_in_for_the_crane(hil::load_plant_config(path));
+    } catch (const runtime::ConfigError& error) {
+        spdlog::error("{}", error.what());
+        return exit_bad_input;
+    } catch (const std::exception& error) {
+        spdlog::error("{}", error.what());
+        return exit_failed;
+    }
+}

@@ -1,0 +1,118 @@
+#include "hil/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "plant/adaptive_runge_kutta.hpp"
+#include "plant/runge_kutta.hpp"
+
+namespace steadyboom::hil {
+
+using namespace plant;
+
+namespace {
+
+/// Accuracy of the adaptive integrator: 1e-9 relative, and these below, in each entry's unit.
+AdaptiveRungeKutta<CraneState>::Tolerances adaptive_tolerances() {
+    return {.relative = 1e-9, .absolute = CraneState::Constant(1e-10), .max_step_s = 0.01};
+}
+
+void check(const SimulationOptions& options) {
+    const auto require = [](bool good, const std::string& text) {
+        if (!good) {
+            throw std::invalid_argument(text);
+        }
+    };
+    require(options.duration_s > 0.0 && std::isfinite(options.duration_s), "the duration must be positive, in s");
+    require(options.output_period_s > 0.0 && std::isfinite(options.output_period_s),
+            "the output period must be positive, in s");
+    require(!options.step_s || (*options.step_s > 0.0 && *options.step_s <= options.duration_s),
+            "the step must be positive and no longer than the duration, in s");
+}
+
+}  // namespace
+
+RunFigures simulate(const SimulationOptions& options, const std::function<void(const TruthSample&)>& output) {
+    check(options);
+    const CraneDynamics crane(options.crane_case.crane);
+    const Equilibrium equilibrium = find_equilibrium(crane);
+    const controllers::Law law(options.law, options.crane_case.gains, equilibrium.state);
+    FigureAccumulator figures(crane, equilibrium, options.duration_s);
+
+    const auto opening_m = [&](const CraneState& x) {
+        return crane.actuator().clamp_opening_m(law.command(x).opening_m);
+    };
+    const auto rate = [&](double, const CraneState& x) { return crane.derivative(x, opening_m(x)); };
+    const auto sample = [&](const CraneState& x, double t_s) {
+        return sample_truth(crane, x, opening_m(x), equilibrium.pendent_tension_N, t_s);
+    };
+    const auto finite = [](const CraneState& x, double t_s) {
+        if (!x.allFinite()) {
+            throw IntegrationError("the state is no longer finite at t = " + std::to_string(t_s) +
+                                   " s; a fixed step must be shorter than about 6 ms for this crane's fastest mode");
+        }
+    };
+
+    CraneState state = equilibrium.state;
+    state[velocity_offset + R9_m] = options.crane_case.manoeuvre.brake_rate_m_s();
+    const TruthSample start = sample(state, 0.0);
+    figures.add(start);
+    output(start);
+
+    // Outputs that fall into (t0, t1], in order; the last one is the end of the run itself.
+    const auto last_output = static_cast<long>(std::ceil(options.duration_s / options.output_period_s - 1e-9));
+    long next_output = 1;
+    const auto emit = [&](double t1_s, const auto& interpolate) {
+        while (next_output <= last_output) {
+            const double due_s =
+                std::min(static_cast<double>(next_output) * options.output_period_s, options.duration_s);
+            if (due_s > t1_s * (1.0 + 1e-12)) {
+                break;
+            }
+            const TruthSample at_output = sample(interpolate(due_s), due_s);
+            figures.add(at_output);
+            output(at_output);
+            ++next_output;
+        }
+    };
+
+    if (options.step_s) {
+        const double h = *options.step_s;
+        const auto steps = static_cast<long>(std::ceil(options.duration_s / h - 1e-9));
+        for (long i = 0; i < steps; ++i) {
+            const double t0_s = static_cast<double>(i) * h;
+            const double t1_s = i + 1 == steps ? std::max(options.duration_s, t0_s + h) : t0_s + h;
+            CraneState next = runge_kutta_step(rate, t0_s, state, h);
+            next[piston_index] = crane.actuator().clamp_piston_m(next[piston_index]);
+            finite(next, t1_s);
+            const CraneState slope0 = h * rate(t0_s, state);
+            const CraneState slope1 = h * rate(t0_s + h, next);
+            emit(t1_s, [&](double t_s) -> CraneState {
+                const double u = (t_s - t0_s) / h;
+                return (1 + 2 * u) * (1 - u) * (1 - u) * state + u * (1 - u) * (1 - u) * slope0 +
+                       u * u * (3 - 2 * u) * next - u * u * (1 - u) * slope1;
+            });
+            state = next;
+            figures.add(sample(state, t0_s + h));
+        }
+    } else {
+        AdaptiveRungeKutta<CraneState> integrator(0.0, state, adaptive_tolerances());
+        while (integrator.time_s() < options.duration_s) {
+            integrator.advance(rate);
+            finite(integrator.state(), integrator.time_s());
+            emit(integrator.time_s(), [&](double t_s) { return integrator.interpolate(t_s); });
+            figures.add(sample(integrator.state(), integrator.time_s()));
+            const double piston_m = crane.actuator().clamp_piston_m(integrator.state()[piston_index]);
+            if (piston_m != integrator.state()[piston_index]) {
+                CraneState stopped = integrator.state();
+                stopped[piston_index] = piston_m;
+                integrator.restart(stopped);
+            }
+        }
+    }
+    return figures.figures();
+}
+
+}  // namespace steadyboom::hil

@@ -1,0 +1,192 @@
+// steadyboom-controller: the deployed machine. Reads the crane over CAN, commands the servo valve, obeys the operator's
+// socket, shows every tick in shared memory.
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <systemd/sd-daemon.h>
+
+#include "drivers/socketcan_bus.hpp"
+#include "runtime/control_tick.hpp"
+#include "runtime/controller_config.hpp"
+#include "runtime/operator_socket.hpp"
+#include "runtime/periodic_loop.hpp"
+#include "runtime/realtime_thread.hpp"
+#include "runtime/toml_reader.hpp"
+
+namespace {
+
+using namespace steadyboom;
+using controllers::InterlockState;
+
+constexpr int exit_done = 0;
+constexpr int exit_failed = 1;
+constexpr int exit_bad_input = 2;
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
+
+void request_stop(int) { stop_requested.store(true, std::memory_order_relaxed); }
+
+runtime::ControlTickConfig tick_config(const runtime::ControllerConfig& config) {
+    return {.crane = config.crane.crane,
+            .law = config.law,
+            .gains = config.crane.gains,
+            .network = {.spool_travel_m = config.crane.crane.actuator.spool_travel_m,
+                        .period_ns = config.period_ns(),
+                        .bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s)},
+            .max_opening_m = config.max_opening_m,
+            .max_slew_m_s = config.max_slew_m_s,
+            .engage_ramp_s = config.engage_ramp_s};
+}
+
+/// Watches the tick from outside: logs what changed, and feeds the service manager's watchdog only while ticks go on.
+class Supervisor {
+  public:
+    Supervisor(const runtime::OperatorMailbox& mailbox, const runtime::PeriodicLoop& loop)
+        : mailbox_(mailbox), loop_(loop), thread_("supervisor", [this](std::stop_token stop) { watch(stop); }) {}
+
+  private:
+    void watch(const std::stop_token& stop) {
+        bool ready = false;
+        std::uint64_t last_ticks = 0;
+        std::uint64_t last_skipped = 0;
+        std::uint32_t last_state = ~0U;
+        std::uint32_t last_reasons = 0;
+        while (!stop.stop_requested()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            const runtime::LoopStatistics& statistics = loop_.statistics();
+            const std::uint64_t ticks = statistics.ticks.load(std::memory_order_relaxed);
+            if (ticks != last_ticks) {
+                sd_notify(0, ready ? "WATCHDOG=1" : "READY=1\nWATCHDOG=1");
+                ready = true;
+            }
+            last_ticks = ticks;
+            const std::uint64_t skipped = statistics.skipped.load(std::memory_order_relaxed);
+            if (skipped != last_skipped) {
+                spdlog::warn("{} control ticks skipped so far", skipped);
+                last_skipped = skipped;
+            }
+            const runtime::OperatorStatus status = mailbox_.status();
+            if (status.time_ns != 0 && (status.state != last_state || status.reasons != last_reasons)) {
+                spdlog::info("tick {}: {}: {}", status.tick,
+                             controllers::name_of(static_cast<InterlockState>(status.state)),
+                             controllers::reasons_in_words(status.reasons));
+                last_state = status.state;
+                last_reasons = status.reasons;
+            }
+        }
+    }
+
+    const runtime::OperatorMailbox& mailbox_;
+    const runtime::PeriodicLoop& loop_;
+    runtime::HelperThread thread_;  ///< last: it uses the others
+};
+
+int control(const runtime::ControllerConfig& config) {
+    drivers::CraneNetwork network(tick_config(config).network);
+    drivers::SocketCanBus bus(config.interface, {.filters = network.filters()});
+    runtime::MonotonicClock clock;
+    runtime::OperatorMailbox mailbox;
+    runtime::TickRingWriter<runtime::TickRecord> ring(
+        config.telemetry_ring_path,
+        {.period_ns = config.period_ns(), .crane_hash = runtime::crane_hash(config.crane.crane)});
+    const auto tick = std::make_unique<runtime::ControlTick>(tick_config(config), bus, clock, mailbox, ring);
+
+    runtime::OperatorSocketOptions socket_options;
+    socket_options.path = config.operator_socket_path;
+    socket_options.describe = [](const runtime::OperatorStatus& status) {
+        std::string text = controllers::name_of(static_cast<InterlockState>(status.state));
+        const std::string reasons = controllers::reasons_in_words(status.reasons);
+        return reasons.empty() ? text : text + ": " + reasons;
+    };
+    socket_options.log = [](const std::string& line) { spdlog::info("operator: {}", line); };
+    const runtime::OperatorSocket socket(socket_options, mailbox, clock);
+
+    runtime::PeriodicLoop loop(clock, config.period_ns());
+    const Supervisor supervisor(mailbox, loop);
+
+    const bool wants_fifo = config.realtime_priority > 0;
+    const runtime::RealtimeGrant grant = runtime::become_realtime(
+        {.policy = wants_fifo ? runtime::SchedulingPolicy::fifo : runtime::SchedulingPolicy::other,
+         .priority = config.realtime_priority,
+         .cpu = config.realtime_cpu >= 0 ? std::optional(config.realtime_cpu) : std::nullopt,
+         .lock_memory = config.realtime_lock_memory});
+    for (const runtime::RealtimeRefusal& refusal : grant.refusals) {
+        spdlog::warn("not real-time: {}", refusal.message());
+    }
+    if (config.realtime_required && !grant.complete()) {
+        spdlog::error("the kernel does not grant what [realtime] asks for and realtime.required is true: not starting");
+        return exit_failed;
+    }
+    spdlog::info("{} at {} Hz on {}: {}", controllers::name_of(config.law), config.rate_Hz, config.interface,
+                 grant.summary());
+
+    // After a stop request the operator's stop is in force: the command ramps down, then the valve hears a live
+    // controller that wants nothing for a moment more.
+    constexpr double farewell_s = 0.2;
+    auto farewell_ticks = static_cast<std::int64_t>(farewell_s * config.rate_Hz) + 1;
+    std::atomic<bool> over{false};
+    loop.run(
+        [&](const runtime::TickStart& start) noexcept {
+            if (stop_requested.load(std::memory_order_relaxed)) {
+                tick->request_stop();
+                if (--farewell_ticks <= 0) {
+                    over.store(true, std::memory_order_relaxed);
+                }
+            }
+            tick->run(start);
+        },
+        over);
+
+    sd_notify(0, "STOPPING=1");
+    const runtime::LoopStatistics& statistics = loop.statistics();
+    spdlog::info("{} ticks, {} overruns, {} skipped; wake-up latency p50 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us; "
+                 "execution p50 {:.1f} us, p99.9 {:.1f} us",
+                 statistics.ticks.load(), statistics.overruns.load(), statistics.skipped.load(),
+                 1e-3 * static_cast<double>(statistics.wake_up_latency.quantile_ns(0.5)),
+                 1e-3 * static_cast<double>(statistics.wake_up_latency.quantile_ns(0.99)),
+                 1e-3 * static_cast<double>(statistics.wake_up_latency.quantile_ns(0.999)),
+                 1e-3 * static_cast<double>(statistics.execution_time.quantile_ns(0.5)),
+                 1e-3 * static_cast<double>(statistics.execution_time.quantile_ns(0.999)));
+    return exit_done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Steadyboom's real-time controller: keeps a crane's boom steady through the valve in its pendent.\n"
+                 "Exit codes: 0 stopped by SIGTERM or SIGINT, 1 failed, 2 bad input.",
+                 "steadyboom-controller");
+    app.set_version_flag("--version", "steadyboom-controller " STEADYBOOM_VERSION);
+    std::string path;
+    app.add_option("--config", path, "Configuration file; its form: systemd/controller.toml")->required();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? exit_done : exit_bad_input;
+    }
+
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("steadyboom-controller"));
+    spdlog::set_pattern("%n: %l: %v");
+    struct sigaction action {};
+    action.sa_handler = request_stop;
+    sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGINT, &action, nullptr);
+    try {
+        return control(runtime::load_controller_config(path));
+    } catch (const runtime::ConfigError& error) {
+        spdlog::error("{}", error.what());
+        return exit_bad_input;
+    } catch (const std::exception& error) {
+        spdlog::error("{}", error.what());
+        return exit_failed;
+    }
+}
