@@ -1,8 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
+
+#include <Eigen/Core>
 
 namespace steadyboom::plant {
 
@@ -24,7 +27,9 @@ class AdaptiveRungeKutta {
     };
 
     AdaptiveRungeKutta(double t_s, const State& state, const Tolerances& tolerances, double first_step_s = 1e-4)
-        : tolerances_(tolerances), begin_s_(t_s), end_s_(t_s), step_s_(first_step_s), end_(state) {}
+        : tolerances_(tolerances), begin_s_(t_s), end_s_(t_s), step_s_(first_step_s), begin_(state), end_(state) {
+        c_[0] = state;
+    }
 
     [[nodiscard]] double time_s() const noexcept { return end_s_; }
     [[nodiscard]] const State& state() const noexcept { return end_; }
@@ -67,7 +72,7 @@ class AdaptiveRungeKutta {
         }
     }
 
-    /// The solution inside the last accepted step, begin <= t_s <= time_s().
+    /// The solution inside the last accepted step, begin <= t_s <= time_s(); before the first step the start.
     [[nodiscard]] State interpolate(double t_s) const noexcept {
         const double theta = (t_s - begin_s_) / width_s_;
         const double rest = 1.0 - theta;
@@ -81,6 +86,13 @@ class AdaptiveRungeKutta {
     }
 
   private:
+    template <std::size_t count>
+    static std::array<State, count> filled() {
+        std::array<State, count> zeros;
+        zeros.fill(State::Zero());
+        return zeros;
+    }
+
     template <class Rate>
     State stages(const Rate& rate, double h) {
         const State& y = end_;
@@ -102,7 +114,8 @@ class AdaptiveRungeKutta {
                                  17253.0 / 339200 * k_[4] + 22.0 / 525 * k_[5] - 1.0 / 40 * k_[6]);
         const State scale =
             tolerances_.absolute + tolerances_.relative * end_.cwiseAbs().cwiseMax(next.cwiseAbs());
-        return error.cwiseQuotient(scale).cwiseAbs().maxCoeff();
+        // A plain maxCoeff may pass over a NaN.
+        return error.cwiseQuotient(scale).cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();
     }
 
     void make_extension(double h) {
@@ -120,9 +133,10 @@ class AdaptiveRungeKutta {
     Tolerances tolerances_;
     double begin_s_, end_s_, step_s_;
     double width_s_ = 1.0;
-    State begin_, end_, begin_rate_;
-    State k_[7];
-    State c_[5];
+    State begin_, end_;
+    State begin_rate_ = State::Zero();
+    std::array<State, 7> k_ = filled<7>();
+    std::array<State, 5> c_ = filled<5>();
     bool rate_known_ = false;  ///< k_[0] is the rate at end_
     long accepted_ = 0;
     long rejected_ = 0;

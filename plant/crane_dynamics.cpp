@@ -25,6 +25,9 @@ constexpr double dot(Plane a, Plane b) noexcept { return a.x * b.x + a.y * b.y; 
 constexpr Plane operator+(Plane a, Plane b) noexcept { return {a.x + b.x, a.y + b.y}; }
 constexpr Plane operator*(double s, Plane a) noexcept { return {s * a.x, s * a.y}; }
 
+/// A rope's tension; std::max(0.0, NaN) would be 0 and hide a broken state, this order keeps it.
+constexpr double pull_only_N(double force_N) noexcept { return std::max(force_N, 0.0); }
+
 }  // namespace
 
 /// Directions, lever arms and chord derivatives of one configuration; the columns of the Jacobians are built from them.
@@ -102,8 +105,8 @@ CraneDynamics::Pendent CraneDynamics::pendent(const Kinematics& k, double piston
     return {.length_m = length_m,
             .slope_R8 = (k.R8 - R_d * cos_B) * inverse_length_1_m,
             .slope_phiB_m = k.R8 * R_d * sin_B * inverse_length_1_m,
-            .tension_N = std::max(0.0, parameters_.ropes.pendent_stiffness_N_m *
-                                           (length_m - free_pendent_length_m_ + piston_m))};
+            .tension_N = pull_only_N(parameters_.ropes.pendent_stiffness_N_m *
+                                     (length_m - free_pendent_length_m_ + piston_m))};
 }
 
 double CraneDynamics::pendent_rate_m_s(const Kinematics& k, const Pendent& pendent,
@@ -216,8 +219,8 @@ Coordinates CraneDynamics::force(const Kinematics& k, const Pendent& pendent, co
     const double butt_n = m_B * dot(butt, k.n6);
 
     const SoilReaction soil = soil_.reaction(p[R1_m], p[phi2_rad], k.sin_phi2, v[R1_m], w2);
-    const double line_tension_N = std::max(
-        0.0, parameters_.ropes.load_line_stiffness_N_m * (k.R9 - parameters_.ropes.load_line_length_m));
+    const double line_tension_N = pull_only_N(parameters_.ropes.load_line_stiffness_N_m *
+                                              (k.R9 - parameters_.ropes.load_line_length_m));
     const double pull_R8 = pendent.tension_N * pendent.slope_R8;
     const double pull_phiB = pendent.tension_N * pendent.slope_phiB_m;
     const Plane hung = m_L * load + m_B * (links * butt + links_bias);
@@ -266,8 +269,8 @@ CraneOutputs CraneDynamics::outputs(const CraneState& state) const noexcept {
     const Kinematics k = kinematics(coordinates_of(state));
     const Pendent line = pendent(k, actuator_.clamp_piston_m(state[piston_index]));
     return {.pendent_tension_N = line.tension_N,
-            .load_line_tension_N = std::max(0.0, parameters_.ropes.load_line_stiffness_N_m *
-                                                     (k.R9 - parameters_.ropes.load_line_length_m)),
+            .load_line_tension_N = pull_only_N(parameters_.ropes.load_line_stiffness_N_m *
+                                               (k.R9 - parameters_.ropes.load_line_length_m)),
             .pendent_length_m = line.length_m,
             .pendent_rate_m_s = pendent_rate_m_s(k, line, velocities_of(state)),
             .chord_m = k.R8,

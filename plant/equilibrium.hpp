@@ -23,7 +23,8 @@ struct EquilibriumError : std::runtime_error {
 };
 
 /// Damped Newton on Q(p, 0, X_p = 0) = 0 (thesis 4-3), started from the unstretched geometry.
-/// Converged means residual <= 1e-12. Throws EquilibriumError otherwise; never returns an unconverged state.
+/// Converged means that the residual is at most 1e-12, or that no step lowers it any more and it is at most 1e-9 (what
+/// rounding leaves with stiff ropes). Throws EquilibriumError otherwise; never returns an unconverged state.
 [[nodiscard]] Equilibrium find_equilibrium(const CraneDynamics& crane);
 
 /// -dQ/dp at rest with the piston fixed at X_p = 0, central differences, symmetrised; N/m, N, N m as the coordinates ask.

@@ -37,7 +37,7 @@ double Soil::contact_fraction(double height_m, double tilt_rad, double sin_phi2)
     // Below this tilt the ratio R1 / sin|phi2| carries no information (model page, section 3).
     constexpr double level_rad = 1e-12;
     if (std::abs(tilt_rad) < level_rad) {
-        return height_m < 0.0 ? 1.0 : 0.0;
+        return height_m >= 0.0 ? 0.0 : 1.0;
     }
     const double f_m = std::clamp(-height_m / std::abs(sin_phi2), -track_half_length_m_, track_half_length_m_);
     return 0.5 * (1.0 + f_m / track_half_length_m_);
@@ -51,7 +51,7 @@ SoilReaction Soil::reaction(double height_m, double tilt_rad, double sin_phi2, d
     const double sink_m = height_m + e_m * tilt_rad;
     const double sink_rate_m_s = height_rate_m_s + e_m * tilt_rate_rad_s;
     const double vertical_N =
-        std::max(0.0, -soil.vertical_stiffness_N_m * sink_m - soil.vertical_damping_N_s_m * sink_rate_m_s);
+        std::max(-soil.vertical_stiffness_N_m * sink_m - soil.vertical_damping_N_s_m * sink_rate_m_s, 0.0);
     return {.contact_fraction = beta,
             .contact_offset_m = e_m,
             .vertical_N = vertical_N,
