@@ -178,7 +178,7 @@ class DeviceTable {
     NetworkConfig config_;
     std::array<MessageRow, message_count> messages_;
     std::array<SignalRow, signal_count> signals_;
-    std::array<Message, standard_id_count> by_id_;
+    std::array<Message, standard_id_count> by_id_{};
 };
 
 /// Lower-case name of a device, as configuration and logs spell it ("strain_link").

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <ctime>
 #include <stdexcept>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -92,7 +93,7 @@ class Socket {
 }
 
 std::string reason(int error) {
-    return std::strerror(error);
+    return std::generic_category().message(error);
 }
 
 /// Opens, sets up and binds a socket, and says how large a receive buffer it got. Throws std::runtime_error.
