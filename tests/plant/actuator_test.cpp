@@ -126,14 +126,15 @@ TEST(Piston, ConstantFlowIntoASlackPendentRunsToTheStopInTheTimeItTakes) {
     start[phi6_rad] += 0.1;
     const double rate_m_s = 4.12 * 5e-3 / area_m2;
     double arrived_s = 0.0;
-    run_crane(crane, start, 0.4, 1e-3, 1e-9, [](double, const CraneState&) { return 5e-3; },
-              [&](double t_s, const CraneState& x, double) {
-                  ASSERT_EQ(crane.outputs(x).pendent_tension_N, 0.0);
-                  EXPECT_NEAR(x[piston_index], std::min(0.10, rate_m_s * t_s), 1e-9);
-                  if (arrived_s == 0.0 && x[piston_index] >= 0.10 - 1e-9) {
-                      arrived_s = t_s;
-                  }
-              });
+    run_crane(
+        crane, start, 0.4, 1e-3, 1e-9, [](double, const CraneState&) { return 5e-3; },
+        [&](double t_s, const CraneState& x, double) {
+            ASSERT_EQ(crane.outputs(x).pendent_tension_N, 0.0);
+            EXPECT_NEAR(x[piston_index], std::min(0.10, rate_m_s * t_s), 1e-9);
+            if (arrived_s == 0.0 && x[piston_index] >= 0.10 - 1e-9) {
+                arrived_s = t_s;
+            }
+        });
     EXPECT_NEAR(arrived_s, 0.10 / rate_m_s, 1e-3);
 }
 

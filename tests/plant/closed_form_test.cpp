@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "crane_run.hpp"
 #include "plant/energy.hpp"
@@ -22,8 +22,8 @@ constexpr double load_kg = 13600.0;
 constexpr double link_kg = 4730.0;
 constexpr double total_kg = 61300.0 + 87600.0 + 3.0 * link_kg + load_kg;
 
-/// Case A with every spring stiff, twice as stiff at scale 2; a test then softens the one it is about. Stiffer still and
-/// the differences of the linearisation would step across the ropes' kinks.
+/// Case A with every spring stiff, twice as stiff at scale 2; a test then softens the one it is about. Stiffer still
+/// and the differences of the linearisation would step across the ropes' kinks.
 CraneParameters rigid(double scale) {
     CraneParameters parameters = thesis_crane('A');
     parameters.structure.boom_joint_stiffness_N_m = scale * 1e12;
@@ -93,13 +93,14 @@ TEST(RigidCrane, LargeSwingHasThePendulumsPeriod) {
     std::vector<double> crossings_s;
     double before_rad = amplitude_rad;
     constexpr double period_s = 1e-3;
-    run_crane(crane, start, 7.0, period_s, 1e-9, [](double, const CraneState&) { return 0.0; },
-              [&](double t_s, const CraneState& x, double) {
-                  if (before_rad * x[phi9_rad] < 0.0) {
-                      crossings_s.push_back(t_s - period_s * x[phi9_rad] / (x[phi9_rad] - before_rad));
-                  }
-                  before_rad = x[phi9_rad];
-              });
+    run_crane(
+        crane, start, 7.0, period_s, 1e-9, [](double, const CraneState&) { return 0.0; },
+        [&](double t_s, const CraneState& x, double) {
+            if (before_rad * x[phi9_rad] < 0.0) {
+                crossings_s.push_back(t_s - period_s * x[phi9_rad] / (x[phi9_rad] - before_rad));
+            }
+            before_rad = x[phi9_rad];
+        });
     // T = 2 pi sqrt(R / g) / agm(1, cos(amplitude / 2)).
     double a = 1.0;
     double g = std::cos(amplitude_rad / 2.0);
@@ -166,8 +167,8 @@ TEST(HeldBoom, BendsInTwoModesUnderItsThrust) {
 
     const double K_N_m = 1.31e9 / (L_B * L_B) - thrust_N / (3.0 * L_B);
     const double EI_N_m2 = 1.31e9 * L_B / 3.0;
-    const double C_N_s_m = 0.007 * pi * pi * 0.375 * 45.7 * 45.7 *
-                           std::sqrt(EI_N_m2 * link_kg / (3.0 * 45.7 * 45.7 * 45.7)) / (L_B * L_B);
+    const double C_N_s_m =
+        0.007 * pi * pi * 0.375 * 45.7 * 45.7 * std::sqrt(EI_N_m2 * link_kg / (3.0 * 45.7 * 45.7 * 45.7)) / (L_B * L_B);
 
     const Coordinates p = coordinates_of(x);
     const MassMatrix M = crane.mass_matrix(p);
@@ -195,8 +196,8 @@ TEST(Boom, ChordShortensAsThreeLinksOfFixedLength) {
     const double L_B = 45.7 / 3.0;
     const double q1 = 0.3;
     const double q2 = -0.2;
-    const double exact_m = std::sqrt(L_B * L_B - q1 * q1) + std::sqrt(L_B * L_B - (q2 - q1) * (q2 - q1)) +
-                           std::sqrt(L_B * L_B - q2 * q2);
+    const double exact_m =
+        std::sqrt(L_B * L_B - q1 * q1) + std::sqrt(L_B * L_B - (q2 - q1) * (q2 - q1)) + std::sqrt(L_B * L_B - q2 * q2);
     EXPECT_EQ(boom.chord_m(0.0, 0.0), 45.7);
     EXPECT_NEAR(45.7 - boom.chord_m(q1, q2), 45.7 - exact_m, 1e-3 * (45.7 - exact_m));
 }

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include "crane_run.hpp"
 #include "random_states.hpp"
@@ -144,8 +144,7 @@ TEST_P(EnergyOf, LawTwoRunBalancesItsPowers) {
     const double injected_J = kinetic_energy_J(crane, start);
     const double desired_q1_m = start[q1_m];
     PowerBalance balance(crane);
-    balance.run(start, 4.0,
-                [&](double, const CraneState& x) { return thesis.joint_gain * (desired_q1_m - x[q1_m]); });
+    balance.run(start, 4.0, [&](double, const CraneState& x) { return thesis.joint_gain * (desired_q1_m - x[q1_m]); });
     EXPECT_LT(balance.worst_J, 1e-6 * injected_J);
     EXPECT_GT(balance.most_work_J, 0.1 * injected_J);
     EXPECT_GT(balance.line_slack, 0);
@@ -160,9 +159,8 @@ TEST_P(EnergyOf, ValveDrivenIntoBothEndStopsBalancesItsPowers) {
     const CraneState start = after_load_drop(crane, thesis.load_drop_m);
     const double injected_J = kinetic_energy_J(crane, start);
     PowerBalance balance(crane);
-    balance.run(start, 3.0, [](double t_s, const CraneState&) {
-        return 9e-3 * std::sin(2.0 * std::numbers::pi * 0.7 * t_s);
-    });
+    balance.run(start, 3.0,
+                [](double t_s, const CraneState&) { return 9e-3 * std::sin(2.0 * std::numbers::pi * 0.7 * t_s); });
     EXPECT_LT(balance.worst_J, 1e-6 * injected_J);
     // Case C's pendent is stretched by more than the piston's travel.
     EXPECT_EQ(balance.pendent_slack > 0, GetParam() != 'C');
@@ -187,12 +185,11 @@ TEST_P(EnergyOf, SlopeAlongTheMotionIsThePower) {
             return kinetic_energy_J(crane, y) + potential_energy_J(crane, y);
         };
         constexpr double h = 2e-6;
-        const double slope_W = (8.0 * (energy_J(h) - energy_J(-h)) - (energy_J(2.0 * h) - energy_J(-2.0 * h))) /
-                               (12.0 * h);
+        const double slope_W =
+            (8.0 * (energy_J(h) - energy_J(-h)) - (energy_J(2.0 * h) - energy_J(-2.0 * h))) / (12.0 * h);
         const NonConservativePower power = non_conservative_power(crane, x, opening_m);
-        const double kinetic_turnover_W =
-            std::abs(velocities_of(x).dot(crane.mass_matrix(Coordinates(coordinates_of(x))) *
-                                          Coordinates(velocities_of(flow))));
+        const double kinetic_turnover_W = std::abs(
+            velocities_of(x).dot(crane.mass_matrix(Coordinates(coordinates_of(x))) * Coordinates(velocities_of(flow))));
         ASSERT_NEAR(slope_W, power.total_W(),
                     1e-6 * (std::abs(power.boom_damping_W) + std::abs(power.soil_W) + std::abs(power.piston_W) +
                             kinetic_turnover_W));

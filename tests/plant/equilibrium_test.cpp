@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "random_states.hpp"
 #include "support/thesis_cranes.hpp"
@@ -84,9 +84,9 @@ TEST(Equilibrium, ThrowsOnParametersThatAreNoNumbers) {
         parameters.structure.*field = nan;
         expect_cannot_stand(parameters, "NaN");
     }
-    for (double RopeParameters::*field : {&RopeParameters::load_line_stiffness_N_m,
-                                          &RopeParameters::pendent_stiffness_N_m,
-                                          &RopeParameters::load_line_length_m}) {
+    for (double RopeParameters::*field :
+         {&RopeParameters::load_line_stiffness_N_m, &RopeParameters::pendent_stiffness_N_m,
+          &RopeParameters::load_line_length_m}) {
         CraneParameters parameters = thesis_crane('A');
         parameters.ropes.*field = nan;
         expect_cannot_stand(parameters, "NaN");

@@ -107,7 +107,9 @@ TEST(ClassicalRungeKutta, HandsTheRateTheStagesTimes) {
 
 using Pair = Eigen::Vector2d;
 
-Pair forced(double t_s, const Pair& y) { return {y[1], -y[0] + 3.0 * std::sin(2.0 * t_s)}; }
+Pair forced(double t_s, const Pair& y) {
+    return {y[1], -y[0] + 3.0 * std::sin(2.0 * t_s)};
+}
 // x'' = -x + 3 sin 2t, x(0) = 1, x'(0) = 0.
 Pair forced_exactly(double t_s) {
     return {std::cos(t_s) + 2.0 * std::sin(t_s) - std::sin(2.0 * t_s),
@@ -120,8 +122,8 @@ TEST(AdaptiveRungeKuttaOnAKnownSolution, EndsAreOfOrderFiveAndTheDenseOutputOfOr
     std::vector<double> dense_errors;
     for (const double h_s : {0.2, 0.1, 0.05, 0.025}) {
         // The tolerance is loose: max_step_s alone fixes the step.
-        AdaptiveRungeKutta<Pair> integrator(
-            0.0, forced_exactly(0.0), {.relative = 1.0, .absolute = Pair::Constant(1.0), .max_step_s = h_s}, h_s);
+        AdaptiveRungeKutta<Pair> integrator(0.0, forced_exactly(0.0),
+                                            {.relative = 1.0, .absolute = Pair::Constant(1.0), .max_step_s = h_s}, h_s);
         double dense = 0.0;
         const auto count = std::lround(4.0 / h_s);
         for (long i = 0; i < count; ++i) {

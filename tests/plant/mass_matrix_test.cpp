@@ -1,7 +1,7 @@
+#include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <gtest/gtest.h>
 
 #include "plant/crane_dynamics.hpp"
 #include "random_states.hpp"

@@ -27,7 +27,9 @@ std::invoke_result_t<F, Real> slope(const F& f, Real h) {
 constexpr Real wide = 1e-3L;
 constexpr Real narrow = 1e-5L;
 
-std::complex<Real> toward(Real angle) { return std::exp(i_unit * angle); }
+std::complex<Real> toward(Real angle) {
+    return std::exp(i_unit * angle);
+}
 
 }  // namespace
 
@@ -56,7 +58,8 @@ SecondDerivation::Points SecondDerivation::points(const Vector& p) const {
     const std::complex<Real> axis = ground + i_unit * body * static_cast<Real>(s.car_body_height_m);
     z.car_body = axis + toward(p[phi2_rad] - s.car_body_angle_rad + pi) * static_cast<Real>(s.car_body_setback_m);
     z.butt = axis + body * static_cast<Real>(s.boom_butt_offset_m);
-    z.anchor = z.butt + i_unit * body * toward(s.pendent_anchor_angle_rad) * static_cast<Real>(s.pendent_anchor_radius_m);
+    z.anchor =
+        z.butt + i_unit * body * toward(s.pendent_anchor_angle_rad) * static_cast<Real>(s.pendent_anchor_radius_m);
     z.lower = z.butt + along * (chord / 3.0L) + below * p[q1_m];
     z.upper = z.butt + along * (chord * 2.0L / 3.0L) + below * p[q2_m];
     z.tip = z.butt + along * chord;
@@ -111,8 +114,8 @@ Real SecondDerivation::potential_energy(const Vector& p, Real piston) const {
     const Real link_length = s.boom_length_m / 3.0L;
     const Real q1 = p[q1_m];
     const Real q2 = p[q2_m];
-    const Real bending = 1.5L * s.boom_joint_stiffness_N_m / (link_length * link_length) *
-                         (q1 * q1 + (q2 - q1) * (q2 - q1) + q2 * q2);
+    const Real bending =
+        1.5L * s.boom_joint_stiffness_N_m / (link_length * link_length) * (q1 * q1 + (q2 - q1) * (q2 - q1) + q2 * q2);
     const Real pendent = pendent_tension(p, piston);
     const Real line = load_line_tension(p);
     return static_cast<Real>(gravity_m_s2) * moment + bending +

@@ -34,7 +34,8 @@ class SecondDerivation {
     /// M_ij = d2T / dv_i dv_j.
     [[nodiscard]] Matrix mass_matrix(const Vector& p) const;
 
-    /// Everything but M p'' on the right-hand side, and the sum of its parts' magnitudes, against which an error counts.
+    /// Everything but M p'' on the right-hand side, and the sum of its parts' magnitudes, against which an error
+    /// counts.
     struct Force {
         Vector value, scale;
     };

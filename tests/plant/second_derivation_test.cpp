@@ -23,7 +23,9 @@ constexpr double relative = 1e-6;
 /// What rounding of sums may add where terms cancel, as a share of the terms' magnitudes.
 constexpr double rounding = 1e-12;
 
-Oracle::Vector widened(const Coordinates& p) { return p.cast<Real>(); }
+Oracle::Vector widened(const Coordinates& p) {
+    return p.cast<Real>();
+}
 
 Contact contact_of(int i) {
     constexpr std::array kinds = {Contact::full, Contact::tilting, Contact::tilting, Contact::lifted, Contact::level};
@@ -77,8 +79,7 @@ TEST_P(SecondDerivationOf, KineticEnergyGivesTheMassMatrix) {
         for (int i = 0; i < coordinate_count; ++i) {
             for (int j = 0; j < coordinate_count; ++j) {
                 ASSERT_NEAR(M(i, j), expected(i, j),
-                            relative * std::abs(expected(i, j)) +
-                                rounding * std::sqrt(expected(i, i) * expected(j, j)))
+                            relative * std::abs(expected(i, j)) + rounding * std::sqrt(expected(i, i) * expected(j, j)))
                     << "entry " << i << "," << j;
             }
         }
@@ -87,8 +88,8 @@ TEST_P(SecondDerivationOf, KineticEnergyGivesTheMassMatrix) {
 
 TEST_P(SecondDerivationOf, LagrangesEquationGivesTheForces) {
     at_random_states([&](const CraneState& x, const Oracle::Vector& p, const Oracle::Vector& v) {
-        const Coordinates Q = crane.generalized_force(Coordinates(coordinates_of(x)), Coordinates(velocities_of(x)),
-                                                      x[piston_index]);
+        const Coordinates Q =
+            crane.generalized_force(Coordinates(coordinates_of(x)), Coordinates(velocities_of(x)), x[piston_index]);
         const Oracle::Force expected = oracle.force(p, v, x[piston_index]);
         for (int i = 0; i < coordinate_count; ++i) {
             const auto wanted = static_cast<double>(expected.value[i]);

@@ -14,7 +14,8 @@ constexpr double half_m = 4.11;
 
 class SoilOfCaseA : public testing::Test {
   protected:
-    SoilReaction at(double height_m, double tilt_rad, double height_rate_m_s = 0.0, double tilt_rate_rad_s = 0.0) const {
+    SoilReaction at(double height_m, double tilt_rad, double height_rate_m_s = 0.0,
+                    double tilt_rate_rad_s = 0.0) const {
         return soil.reaction(height_m, tilt_rad, std::sin(tilt_rad), height_rate_m_s, tilt_rate_rad_s);
     }
 

@@ -39,7 +39,9 @@ class Context {
 };
 
 using NVector = std::unique_ptr<std::remove_pointer_t<N_Vector>, decltype(&N_VDestroy)>;
-NVector vector(int size, const Context& context) { return {N_VNew_Serial(size, context), &N_VDestroy}; }
+NVector vector(int size, const Context& context) {
+    return {N_VNew_Serial(size, context), &N_VDestroy};
+}
 
 template <int size>
 Eigen::Map<Eigen::Matrix<double, size, 1>> mapped(N_Vector v) {
@@ -104,8 +106,9 @@ constexpr double period_s = 0.05;
 std::vector<CraneState> own_run(const CraneDynamics& crane, const CraneState& start, double tolerance,
                                 const std::function<double(const CraneState&)>& law) {
     std::vector<CraneState> samples;
-    run_crane(crane, start, duration_s, period_s, tolerance, [&](double, const CraneState& x) { return law(x); },
-              [&](double, const CraneState& x, double) { samples.push_back(x); });
+    run_crane(
+        crane, start, duration_s, period_s, tolerance, [&](double, const CraneState& x) { return law(x); },
+        [&](double, const CraneState& x, double) { samples.push_back(x); });
     return samples;
 }
 

@@ -69,9 +69,9 @@ Figures run(const ThesisCase& thesis, Law law) {
                       figures.peak_R1_m = R1;
                       figures.peak_R1_at_s = t_s;
                   }
-                  figures.peak_power_W = std::max(
-                      figures.peak_power_W, std::abs(crane.actuator().hydraulic_power_W(
-                                                X_v, outputs.pendent_tension_N, rest.pendent_tension_N)));
+                  figures.peak_power_W =
+                      std::max(figures.peak_power_W, std::abs(crane.actuator().hydraulic_power_W(
+                                                         X_v, outputs.pendent_tension_N, rest.pendent_tension_N)));
                   figures.peak_opening_m = std::max(figures.peak_opening_m, std::abs(X_v));
                   figures.pendent_slack |= outputs.pendent_tension_N <= 0.0;
                   figures.line_slack |= outputs.load_line_tension_N <= 0.0;
@@ -108,18 +108,57 @@ struct Printed {
 
 const Printed& printed(char name) {
     static const std::vector<Printed> all = {
-        {'A', 59.84, 6.8,
-         {{0.14, 0.01, phi9_rad}, {1.4, 0.1, phi6_rad}, {3.7, 0.1, R9_m}, {10.4, 0.1, phi2_rad}, {18.3, 0.1, q1_m},
-          {18.5, 0.1, R1_m}, {69.8, 0.1, q2_m}},
-         0.43, false, 0.26, 0.01, 10.1, 248.0, 1.0},
-        {'B', 69.83, 4.9,
-         {{0.14, 0.01, phi9_rad}, {1.3, 0.1, phi6_rad}, {3.2, 0.1, R9_m}, {8.9, 0.1, phi2_rad}, {15.7, 0.1, R1_m},
-          {18.2, 0.1, q1_m}, {69.4, 0.1, q2_m}},
-         0.43, true, 0.3, 0.1, 40.7, 4630.0, 10.0},
-        {'C', 68.85, 14.2,
-         {{0.13, 0.01, phi9_rad}, {0.34, 0.01, phi6_rad}, {2.7, 0.1, R9_m}, {3.1, 0.1, phi2_rad}, {4.7, 0.1, q1_m},
-          {12.4, 0.1, R1_m}, {17.6, 0.1, q2_m}},
-         0.41, false, 1.1, 0.1, 40.7, 3980.0, 10.0},
+        {'A',
+         59.84,
+         6.8,
+         {{0.14, 0.01, phi9_rad},
+          {1.4, 0.1, phi6_rad},
+          {3.7, 0.1, R9_m},
+          {10.4, 0.1, phi2_rad},
+          {18.3, 0.1, q1_m},
+          {18.5, 0.1, R1_m},
+          {69.8, 0.1, q2_m}},
+         0.43,
+         false,
+         0.26,
+         0.01,
+         10.1,
+         248.0,
+         1.0},
+        {'B',
+         69.83,
+         4.9,
+         {{0.14, 0.01, phi9_rad},
+          {1.3, 0.1, phi6_rad},
+          {3.2, 0.1, R9_m},
+          {8.9, 0.1, phi2_rad},
+          {15.7, 0.1, R1_m},
+          {18.2, 0.1, q1_m},
+          {69.4, 0.1, q2_m}},
+         0.43,
+         true,
+         0.3,
+         0.1,
+         40.7,
+         4630.0,
+         10.0},
+        {'C',
+         68.85,
+         14.2,
+         {{0.13, 0.01, phi9_rad},
+          {0.34, 0.01, phi6_rad},
+          {2.7, 0.1, R9_m},
+          {3.1, 0.1, phi2_rad},
+          {4.7, 0.1, q1_m},
+          {12.4, 0.1, R1_m},
+          {17.6, 0.1, q2_m}},
+         0.41,
+         false,
+         1.1,
+         0.1,
+         40.7,
+         3980.0,
+         10.0},
     };
     for (const Printed& one : all) {
         if (one.name == name) {

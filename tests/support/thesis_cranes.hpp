@@ -18,6 +18,8 @@ struct ThesisCase {
 /// `name` is 'A', 'B' or 'C'; anything else throws std::invalid_argument.
 [[nodiscard]] ThesisCase thesis_case(char name);
 
-[[nodiscard]] inline plant::CraneParameters thesis_crane(char name) { return thesis_case(name).crane; }
+[[nodiscard]] inline plant::CraneParameters thesis_crane(char name) {
+    return thesis_case(name).crane;
+}
 
 }  // namespace steadyboom::test_support
