@@ -93,7 +93,9 @@ int stand_in_for_the_crane(const hil::PlantConfig& config) {
                           static_cast<double>(start.skipped_ticks) * 1e-6 * static_cast<double>(wake_ns));
             return exit_failed;
         }
-        // First what moved until now, then what came: frames take effect at the instant they are read.
+        // Orders first: they came before this instant, and after a late wake-up they have waited longest.
+        const std::size_t count = bus.receive(frames);
+        crane.receive({frames.data(), count}, start.woke_ns);
         for (; step < last_step && epoch_ns + (step + 1) * step_ns <= start.due_ns; ++step) {
             if (step == standing_steps) {
                 crane.brake(config.crane_case.manoeuvre.brake_rate_m_s());
@@ -102,9 +104,7 @@ int stand_in_for_the_crane(const hil::PlantConfig& config) {
             ring.push(record_of(crane.truth(t_s(step + 1)), static_cast<std::uint64_t>(step + 1),
                                 epoch_ns + (step + 1) * step_ns, crane.valve().timeouts()));
         }
-        const std::size_t count = bus.receive(frames);
-        crane.receive({frames.data(), count}, start.due_ns);
-        bus.send(crane.frames_to_send(start.due_ns));
+        bus.send(crane.frames_to_send(start.woke_ns));
         loop.finish();
     }
     const drivers::BusStatus status = bus.status();

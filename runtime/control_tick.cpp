@@ -70,7 +70,8 @@ ControlTick::ControlTick(const ControlTickConfig& config, drivers::CanBus& bus, 
       // so that rounding never trips it and a limiter that fails does.
       guard_({.max_opening_m = config.crane.actuator.spool_travel_m,
               .max_step_m = std::min(1.1 * config.max_slew_m_s * period_s(config),
-                                     config.crane.actuator.spool_travel_m)}) {
+                                     config.crane.actuator.spool_travel_m)}),
+      overruns_are_faults_(config.overruns_are_faults) {
     std::ranges::copy(law_.set_point(), record_.setpoint.begin());
 }
 
@@ -108,7 +109,7 @@ void ControlTick::run(const TickStart& start) noexcept {
     r.time_ns = start.due_ns;
     r.wake_up_latency_ns = start.wake_up_latency_ns;
     r.skipped_ticks = static_cast<std::uint32_t>(start.skipped_ticks);
-    health_.overran = overruns_.broken(start.skipped_ticks);
+    health_.overran = overruns_.broken(start.skipped_ticks) && overruns_are_faults_;
 
     const std::size_t count = bus_.receive(frames_);
     r.receive_duration_ns = lap_ns();

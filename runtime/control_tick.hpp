@@ -31,6 +31,7 @@ struct ControlTickConfig {
     double max_opening_m = 0.0;      ///< performance limit on the command
     double max_slew_m_s = 0.0;       ///< performance limit on its rate
     double engage_ramp_s = 0.5;
+    bool overruns_are_faults = true;  ///< false: soft real-time, a broken schedule is recorded and not acted on
 };
 
 /// One control tick, the heart of the program: frames in, estimate, permission, command, frames out, record.
@@ -84,6 +85,7 @@ class ControlTick {
     controllers::Limiter limiter_;
     drivers::CommandGuard guard_;
     OverrunMonitor overruns_;
+    bool overruns_are_faults_;
 
     controllers::Health health_;
     double applied_linear_m_ = 0.0;  ///< linear-valve opening of the previous tick's flow, in force since then

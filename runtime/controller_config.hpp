@@ -23,7 +23,7 @@ struct ControllerConfig {
     int realtime_priority = 80;  ///< SCHED_FIFO, 1 to 99; 0: ordinary scheduling
     int realtime_cpu = -1;       ///< pin the control thread to it; -1: any
     bool realtime_lock_memory = true;
-    bool realtime_required = true;  ///< end with a failure when the kernel does not grant all of it
+    bool realtime_required = true;  ///< false: soft real-time; refusals and late ticks are reported, not acted on
 
     double max_opening_m = 0.0;  ///< performance limit of the command
     double max_slew_m_s = 0.0;   ///< performance limit of the command's rate

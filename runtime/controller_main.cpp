@@ -44,7 +44,8 @@ runtime::ControlTickConfig tick_config(const runtime::ControllerConfig& config) 
                         .bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s)},
             .max_opening_m = config.max_opening_m,
             .max_slew_m_s = config.max_slew_m_s,
-            .engage_ramp_s = config.engage_ramp_s};
+            .engage_ramp_s = config.engage_ramp_s,
+            .overruns_are_faults = config.realtime_required};
 }
 
 /// Watches the tick from outside: logs what changed, and feeds the service manager's watchdog only while ticks go on.
@@ -58,6 +59,7 @@ class Supervisor {
         bool ready = false;
         std::uint64_t last_ticks = 0;
         std::uint64_t last_skipped = 0;
+        int rounds_since_skip_report = 0;
         std::uint32_t last_state = ~0U;
         std::uint32_t last_reasons = 0;
         while (!stop.stop_requested()) {
@@ -70,9 +72,11 @@ class Supervisor {
             }
             last_ticks = ticks;
             const std::uint64_t skipped = statistics.skipped.load(std::memory_order_relaxed);
-            if (skipped != last_skipped) {
+            constexpr int rounds_between_skip_reports = 20;  // a second: a busy machine must not flood the log
+            if (skipped != last_skipped && ++rounds_since_skip_report >= rounds_between_skip_reports) {
                 spdlog::warn("{} control ticks skipped so far", skipped);
                 last_skipped = skipped;
+                rounds_since_skip_report = 0;
             }
             const runtime::OperatorStatus status = mailbox_.status();
             if (status.time_ns != 0 && (status.state != last_state || status.reasons != last_reasons)) {
