@@ -68,7 +68,7 @@ struct TickRecord {
     std::int64_t law_duration_ns = 0;
     std::int64_t limit_duration_ns = 0;  ///< limiter and guard
     std::int64_t send_duration_ns = 0;
-    std::int64_t predict_duration_ns = 0;  ///< the observer's prediction after the send
+    std::int64_t predict_duration_ns = 0;  ///< the observer's prediction from the samples' instant to this tick
 };
 
 static_assert(std::is_trivially_copyable_v<TickRecord>);
