@@ -18,6 +18,9 @@ try:
 except ImportError:
     sys.exit(77)
 
+# Row of the Jacobian, share of the chord, shares of q1 and q2 below it: the three links' centres and the boom tip.
+LINKS_AND_LOAD = ((4, 1 / 6, 0.5, 0.0), (6, 0.5, 0.5, 0.5), (8, 5 / 6, 0.0, 0.5), (10, 1.0, 0.0, 0.0))
+
 
 class Crane:
     """M p'' = Q with M = sum m J^T J + inertia; Q from the forces and from the accelerations that no p'' causes."""
@@ -92,7 +95,7 @@ class Crane:
         square = w2 * w2
         bias[0:4] = (-square * track_y, square * track_x, -square * car_y, square * car_x)
         butt_bias_x, butt_bias_y = -square * butt_y, square * butt_x
-        for body, along, d1, d2 in ((4, 1 / 6, 0.5, 0.0), (6, 0.5, 0.5, 0.5), (8, 5 / 6, 0.0, 0.5), (10, 1.0, 0.0, 0.0)):
+        for body, along, d1, d2 in LINKS_AND_LOAD:
             a, b = along * R8, d1 * q1 + d2 * q2
             b_rate = d1 * v1 + d2 * v2
             J[body, 3:6] = (
