@@ -1,6 +1,10 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "hil/run_result.hpp"
+#include "hil/virtual_crane.hpp"
 #include "runtime/control_tick.hpp"
 
 namespace steadyboom::hil {
@@ -12,8 +16,36 @@ namespace steadyboom::hil {
 /// The product's way in simulated time: virtual crane, frames on the in-process bus, control tick, frames, valve; one
 /// thread, no waiting. The same options give the same bits.
 ///
-/// The bench arms and engages through the operator's mailbox as soon as the interlock lets it. Throws
-/// plant::EquilibriumError, std::invalid_argument, runtime::ConfigError.
+/// The bench arms and engages through the operator's mailbox as soon as the interlock lets it.
+class LockstepBench {
+  public:
+    /// Throws plant::EquilibriumError, std::invalid_argument, runtime::ConfigError.
+    explicit LockstepBench(const RunOptions& options);
+    ~LockstepBench();
+
+    /// One control tick and the crane's motion until the next.
+    void step();
+
+    /// The last tick of options.duration_s has been stepped.
+    [[nodiscard]] bool finished() const noexcept;
+
+    /// Time of the tick that step() does next; 0 is the brake event.
+    [[nodiscard]] double next_t_s() const noexcept;
+
+    /// For what a test does to the crane between two steps.
+    [[nodiscard]] VirtualCrane& crane() noexcept;
+    [[nodiscard]] runtime::OperatorMailbox& mailbox() noexcept;
+
+    /// Ticks so far; figures and verdict as of now.
+    [[nodiscard]] const std::vector<RunTick>& ticks() const noexcept;
+    [[nodiscard]] RunResult take_result();
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+/// A LockstepBench from its first step to its last.
 [[nodiscard]] RunResult run_in_lockstep(const RunOptions& options);
 
 }  // namespace steadyboom::hil

@@ -1,0 +1,226 @@
+// The closed loop as it ships, in lockstep: virtual crane, frames, control tick. The allocation guard of tests/support
+// is active in every tick.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "drivers/loopback_bus.hpp"
+
+#include "hil/lockstep_run.hpp"
+#include "hil/simulation.hpp"
+
+namespace {
+
+using namespace steadyboom;
+using controllers::InterlockState;
+using controllers::LawKind;
+
+hil::RunOptions options_for(const std::string& name, LawKind law) {
+    hil::RunOptions options{.crane_case = hil::load_case(name), .law = law};
+    options.duration_s = options.crane_case.manoeuvre.duration_s;
+    return options;
+}
+
+/// Laws from the least residual energy to the most.
+std::vector<LawKind> ranking(const std::map<LawKind, double>& residual_J) {
+    std::vector<LawKind> laws(std::begin(controllers::all_laws), std::end(controllers::all_laws));
+    std::ranges::sort(laws, {}, [&](LawKind law) { return residual_J.at(law); });
+    return laws;
+}
+
+class EveryCase : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryCase, RunsRankTheLawsAsTheSimulationDoes) {
+    std::map<LawKind, double> run_J;
+    std::map<LawKind, double> simulated_J;
+    for (const LawKind law : controllers::all_laws) {
+        const hil::RunOptions options = options_for(GetParam(), law);
+        const hil::RunResult run = hil::run_in_lockstep(options);
+        EXPECT_TRUE(run.stayed_engaged) << controllers::name_of(law) << ": " << run.trouble;
+        run_J[law] = run.figures.residual_energy_J;
+        simulated_J[law] = hil::simulate({.crane_case = options.crane_case, .law = law, .duration_s = 10.0},
+                                         [](const hil::TruthSample&) {})
+                               .residual_energy_J;
+    }
+    EXPECT_EQ(ranking(run_J), ranking(simulated_J));
+    EXPECT_EQ(ranking(run_J).front(), LawKind::joint_deflection);
+}
+
+TEST_P(EveryCase, ThroughTheBusTheJointDeflectionLawDampsAsInTheSimulation) {
+    const hil::RunOptions options = options_for(GetParam(), LawKind::joint_deflection);
+    const double run_J = hil::run_in_lockstep(options).figures.residual_energy_J;
+    const double simulated_J =
+        hil::simulate({.crane_case = options.crane_case, .law = options.law, .duration_s = 10.0},
+                      [](const hil::TruthSample&) {})
+            .residual_energy_J;
+    EXPECT_NEAR(run_J, simulated_J, 0.05 * simulated_J);
+}
+
+INSTANTIATE_TEST_SUITE_P(Thesis, EveryCase, testing::Values("case-a", "case-b", "case-c"), [](const auto& tested) {
+    std::string name = tested.param;
+    std::erase(name, '-');
+    return name;
+});
+
+TEST(ClosedLoop, OneSeedGivesTheSameBitsAndAnotherDoesNot) {
+    hil::RunOptions options = options_for("case-a", LawKind::joint_deflection);
+    options.duration_s = 2.0;
+    const hil::RunResult first = hil::run_in_lockstep(options);
+    const hil::RunResult second = hil::run_in_lockstep(options);
+    options.seed = 2;
+    const hil::RunResult other = hil::run_in_lockstep(options);
+
+    ASSERT_EQ(first.ticks.size(), second.ticks.size());
+    bool other_differs = false;
+    for (std::size_t i = 0; i < first.ticks.size(); ++i) {
+        ASSERT_EQ(std::memcmp(&first.ticks[i].record, &second.ticks[i].record, sizeof(runtime::TickRecord)), 0)
+            << "tick " << i;
+        ASSERT_EQ(first.ticks[i].truth.state, second.ticks[i].truth.state) << "tick " << i;
+        other_differs |= first.ticks[i].record.measured != other.ticks[i].record.measured;
+    }
+    ASSERT_EQ(first.frames.size(), second.frames.size());
+    for (std::size_t i = 0; i < first.frames.size(); ++i) {
+        ASSERT_EQ(first.frames[i].id, second.frames[i].id);
+        ASSERT_EQ(first.frames[i].data, second.frames[i].data);
+    }
+    EXPECT_TRUE(other_differs);
+}
+
+TEST(ClosedLoop, NothingMovesTheValveBeforeItIsArmedAndEngaged) {
+    hil::LockstepBench bench(options_for("case-a", LawKind::boom_angle));
+    bool engaged = false;
+    while (bench.next_t_s() < 0.0) {
+        bench.step();
+        const runtime::TickRecord& record = bench.ticks().back().record;
+        const auto state = static_cast<InterlockState>(record.interlock_state);
+        engaged |= state == InterlockState::engaging;
+        if (!engaged) {
+            EXPECT_EQ(record.applied_opening_m, 0.0);
+            EXPECT_EQ(bench.ticks().back().truth.spool_m, 0.0);
+        }
+    }
+    EXPECT_EQ(static_cast<InterlockState>(bench.ticks().back().record.interlock_state), InterlockState::active);
+}
+
+TEST(ClosedLoop, EngagingIsBumpless) {
+    hil::LockstepBench bench(options_for("case-a", LawKind::joint_deflection));
+    while (bench.next_t_s() < 0.0) {
+        bench.step();
+    }
+    const auto& ticks = bench.ticks();
+    const auto first = std::ranges::find_if(ticks, [](const hil::RunTick& tick) {
+        return static_cast<InterlockState>(tick.record.interlock_state) == InterlockState::engaging;
+    });
+    ASSERT_NE(first, ticks.end());
+    constexpr double valve_step_m = 7.6e-3 / 16384.0;
+    EXPECT_LE(std::abs(first->record.applied_opening_m), valve_step_m);
+}
+
+TEST(ClosedLoop, DropoutOfBoomAngleBringsValveToNeutral) {
+    hil::LockstepBench bench(options_for("case-a", LawKind::joint_deflection));
+    while (bench.next_t_s() < 0.3) {
+        bench.step();
+    }
+    ASSERT_NE(bench.ticks().back().record.applied_opening_m, 0.0);
+    bench.crane().network().set_silent(plant::boom_angle_rad, true);
+
+    // One sample is still under way; 3 ticks may go without one; the next tick starts the ramp of 0.1 s.
+    const std::size_t silent_from = bench.ticks().size();
+    while (static_cast<InterlockState>(bench.ticks().back().record.interlock_state) == InterlockState::active) {
+        bench.step();
+        ASSERT_LE(bench.ticks().size(), silent_from + 6);
+    }
+    EXPECT_EQ(bench.ticks().size(), silent_from + 5);
+    EXPECT_EQ(static_cast<InterlockState>(bench.ticks().back().record.interlock_state), InterlockState::stopping);
+    for (int tick = 0; tick < 21; ++tick) {
+        bench.step();
+    }
+    const runtime::TickRecord& neutral = bench.ticks().back().record;
+    EXPECT_EQ(static_cast<InterlockState>(neutral.interlock_state), InterlockState::fault_hold);
+    EXPECT_EQ(neutral.applied_opening_m, 0.0);
+    EXPECT_EQ(neutral.cutoff_energised, 0);
+
+    // The signal's return alone moves nothing.
+    bench.crane().network().set_silent(plant::boom_angle_rad, false);
+    for (int tick = 0; tick < 600; ++tick) {
+        bench.step();
+        ASSERT_EQ(bench.ticks().back().record.applied_opening_m, 0.0);
+    }
+    EXPECT_LT(std::abs(bench.crane().truth(0.0).spool_m), 1e-9);
+    EXPECT_FALSE(bench.take_result().stayed_engaged);
+}
+
+TEST(ClosedLoop, SilenceOfAllDevicesLocksThePiston) {
+    hil::LockstepBench bench(options_for("case-a", LawKind::joint_deflection));
+    while (bench.next_t_s() < 0.3) {
+        bench.step();
+    }
+    for (std::size_t i = 1; i < drivers::device_count; ++i) {
+        bench.crane().network().set_silent(static_cast<drivers::Device>(i), true);
+    }
+    for (int tick = 0; tick < 60; ++tick) {
+        bench.step();
+    }
+    const runtime::TickRecord& record = bench.ticks().back().record;
+    EXPECT_EQ(static_cast<InterlockState>(record.interlock_state), InterlockState::fault_hold);
+    EXPECT_EQ(record.applied_opening_m, 0.0);
+    EXPECT_FALSE(bench.crane().valve().cutoff_open());
+}
+
+TEST(ClosedLoop, AMismatchFalsifiesTheControllersCopyAlone) {
+    hil::RunOptions options = options_for("case-a", LawKind::none);
+    const hil::RunResult exact = hil::run_in_lockstep(options);
+    options.mismatches = {"soil.shear_modulus_Pa=0.8"};
+    const hil::RunResult mismatched = hil::run_in_lockstep(options);
+    EXPECT_EQ(exact.figures.residual_energy_J, mismatched.figures.residual_energy_J);
+    EXPECT_NE(exact.ticks.back().record.estimate, mismatched.ticks.back().record.estimate);
+    options.mismatches = {"soil.no_such_key=0.8"};
+    EXPECT_THROW(hil::LockstepBench{options}, runtime::ConfigError);
+}
+
+TEST(ClosedLoop, TheObserverFollowsTheTrueCrane) {
+    for (const char* name : {"case-a", "case-b", "case-c"}) {
+        const hil::RunResult run = hil::run_in_lockstep(options_for(name, LawKind::joint_deflection));
+        const plant::CraneState rest = run.ticks.front().truth.state;
+        plant::CraneState error = plant::CraneState::Zero();
+        plant::CraneState motion = plant::CraneState::Zero();
+        for (const hil::RunTick& tick : run.ticks) {
+            if (tick.truth.t_s >= 0.0) {
+                error += (plant::CraneState(tick.record.estimate.data()) - tick.truth.state).cwiseAbs2();
+                motion += (tick.truth.state - rest).cwiseAbs2();
+            }
+        }
+        const plant::CraneState share = error.cwiseQuotient(motion).cwiseSqrt();
+        // The load line's own rate jumps at the brake event and cannot be known while the line is slack.
+        for (const int i : {int{plant::R1_m}, int{plant::phi2_rad}, int{plant::q1_m}, int{plant::q2_m},
+                            int{plant::phi6_rad}, int{plant::phi9_rad}}) {
+            EXPECT_LT(share[i], 0.05) << name << " coordinate " << i;
+            EXPECT_LT(share[plant::velocity_offset + i], 0.25) << name << " velocity " << i;
+        }
+        EXPECT_LT(share[plant::R9_m], 0.25) << name;
+    }
+}
+
+TEST(ClosedLoopDeathTest, AnAllocationInsideATickEndsTheTest) {
+    // What the guard must catch: the bench's own frame log, made to grow inside the tick.
+    EXPECT_DEATH(
+        {
+            drivers::LoopbackBus bus(2);
+            runtime::SimulatedClock clock;
+            runtime::OperatorMailbox mailbox;
+            runtime::TickRingWriter<runtime::TickRecord> ring(runtime::TickRingOptions{.capacity_records = 2});
+            const auto tick = std::make_unique<runtime::ControlTick>(
+                hil::control_config(options_for("case-a", LawKind::none)), bus.endpoint(0), clock, mailbox, ring);
+            std::vector<drivers::CanFrame> growing;
+            bus.set_tap([&](const drivers::CanFrame& frame) { growing.push_back(frame); });
+            tick->run({});
+        },
+        "allocation guard: .* inside a RealtimeSection");
+}
+
+}  // namespace
