@@ -162,9 +162,10 @@ class Script {
             1.0 - from_px(14, plot.width_px));
         put("set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\n", 1.0 - from_px(12, plot.height_px),
             from_px(46, plot.height_px));
-        put("set label 1 {} at graph 0.5, screen {:.6f} center\n", quoted(plot.x_label), from_px(8, plot.height_px));
-        put("set label 2 {} at screen {:.6f}, graph 0.5 center rotate by 90\n", quoted(plot.y_label),
-            from_px(9, plot.width_px));
+        put("set label 1 {} at graph 0.5, screen {:.6f} center tc rgb '{}'\n", quoted(plot.x_label),
+            from_px(8, plot.height_px), ink);
+        put("set label 2 {} at screen {:.6f}, graph 0.5 center rotate by 90 tc rgb '{}'\n", quoted(plot.y_label),
+            from_px(9, plot.width_px), ink);
         put("set xrange [{}:{}]\nset yrange [{}:{}]\n", plot.x_range.low, plot.x_range.high, y.low, y.high);
         put("set xtics {}\n", step_of(plot.x_range.high - plot.x_range.low, 8.0));
         if (plot.logarithmic) {

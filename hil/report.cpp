@@ -41,12 +41,12 @@ struct Look {
 constexpr std::array looks{
     Look{LawKind::none, "#8c8c8c", "uncontrolled", "The valve stays shut."},
     Look{LawKind::boom_angle, "#e08a00", "boom angle", "Opens the valve by the boom's angle φ6 and its rate."},
-    Look{LawKind::joint_deflection, "#0072b2", "joint deflection",
+    Look{LawKind::joint_deflection, "#1079bd", "joint deflection",
          "Opens the valve by the bending q1 of the lower boom joint."},
     Look{LawKind::swing_rate, "#00966e", "swing rate", "Opens the valve by the load's swing rate, dφ9/dt."},
 };
 constexpr std::string_view wanted_colour = "#e08a00";
-constexpr std::string_view applied_colour = "#0072b2";
+constexpr std::string_view applied_colour = "#1079bd";
 constexpr std::string_view spool_colour = "#00966e";
 constexpr std::string_view estimate_colour = "#d1008f";
 constexpr std::string_view truth_colour = "#b4b4b4";
@@ -83,7 +83,7 @@ std::string escaped(std::string_view text) {
 
 constexpr std::string_view style = R"(
 :root{color-scheme:light dark;--paper:#fcfcfa;--ink:#1d2329;--soft:#5c6670;--line:#d9dcdf;--panel:#fff;--tint:#e8f1f8;
---accent:#0072b2}
+--accent:#1079bd}
 @media (prefers-color-scheme:dark){:root{--paper:#14181c;--ink:#e4e7ea;--soft:#9aa4ad;--line:#343b42;--panel:#1a1f24;
 --tint:#18303f;--accent:#5db4e6}}
 *{box-sizing:border-box}
@@ -95,24 +95,25 @@ p{margin:.5rem 0;max-width:46rem}
 .soft,figcaption span,small{color:var(--soft)}
 .lead{font-size:1.13rem;margin-top:.9rem;max-width:52rem}
 .warn{border-left:4px solid #d55e00;padding:.3rem .8rem;background:var(--panel)}
-.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,13rem),1fr));gap:.8rem;margin:1.4rem 0}
+.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,10rem),1fr));gap:.8rem;margin:1.4rem 0}
 .tile{background:var(--panel);border:1px solid var(--line);border-radius:8px;padding:.7rem .9rem}
-.tile b{display:block;font-size:1.7rem;line-height:1.25}
+.tile b{display:block;font-size:1.55rem;line-height:1.25}
 .intro{display:grid;grid-template-columns:minmax(0,24rem) minmax(0,1fr);gap:2rem;align-items:center;margin-top:1rem}
 .intro figure{max-width:24rem}
 .intro h2{margin-top:.5rem}
 .laws{display:flex;flex-wrap:wrap;gap:.2rem 1.3rem;margin:.3rem 0 .8rem;padding:0;list-style:none}
 .swatch{display:inline-block;width:1.5em;height:.28em;border-radius:2px;vertical-align:.22em;margin-right:.45em}
 .key{position:sticky;top:0;z-index:1;background:var(--paper);border-bottom:1px solid var(--line);padding:.45rem 0}
-.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,29rem),1fr));gap:1.3rem 1.6rem}
+.plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,29rem),1fr));gap:1.3rem 1.6rem}
 figure{margin:0;break-inside:avoid}
 figcaption{font-size:.95rem;margin:.2rem 0}
 figcaption span{margin-left:.4em}
 svg{display:block;width:100%;height:auto;font-family:inherit}
 .table{overflow-x:auto}
-table{border-collapse:collapse;font-variant-numeric:tabular-nums;width:100%}
+table{border-collapse:collapse;font-variant-numeric:tabular-nums;min-width:min(100%,30rem)}
+.many{width:100%}
 th,td{padding:.28rem .7rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
-th:first-child,td:first-child{text-align:left;padding-left:.2rem}
+th:first-child,td:first-child{text-align:left;padding-left:.2rem;position:sticky;left:0;background:var(--paper)}
 thead th{border-bottom:2px solid var(--ink);vertical-align:bottom}
 td small{display:inline-block;min-width:3.4em}
 .best{background:var(--tint)}
@@ -121,7 +122,7 @@ dl{display:grid;grid-template-columns:max-content minmax(0,1fr);gap:.15rem 1.2re
 dt{color:var(--soft)}
 dd{margin:0}
 @media (max-width:52rem){.intro{grid-template-columns:minmax(0,1fr);gap:.5rem}.intro figure{margin:0 auto;width:100%}}
-@media (max-width:34rem){body{padding-top:1.2rem}h1{font-size:1.5rem}.key{font-size:.85rem}
+@media (max-width:34rem){body{padding-top:1.2rem}h1{font-size:1.5rem}dl{grid-template-columns:minmax(0,1fr)}dd{margin-bottom:.4rem}.key{font-size:.85rem}
 th,td{padding:.28rem .45rem;font-size:.9rem}}
 @media print{:root{--paper:#fff;--ink:#000;--soft:#444;--line:#bbb;--panel:#fff;--tint:#eef4f8}
 body{font-size:10pt;padding:0;max-width:none}.key{position:static}
@@ -233,11 +234,10 @@ class Report {
         put("<figcaption>The crane at rest, to scale, with its coordinates.</figcaption>\n</figure>\n<div>\n"
             "<h2>How to read this</h2>\n"
             "<p>Every curve is of the true (simulated) crane; the controller saw only what noisy sensors sent over the "
-            "CAN bus. Excursions are deviations from rest. “Late” is the second half of the run; the residual energy "
-            "is "
+            "bus. Excursions are deviations from rest. “Late” is the second half of the run; the residual energy is "
             "the mean over its last second.</p>\n"
-            "<p>A good law brings the curves to zero sooner than the grey one, without slack ropes and with little "
-            "power. The valve moves a piston in the pendent line: opening it raises or lowers the boom a little.</p>\n"
+            "<p>A good law brings the curves to zero soon, without slack ropes and with little power. The valve moves "
+            "a piston in the pendent line: opening it raises or lowers the boom a little.</p>\n"
             "<ul class=\"laws\" style=\"flex-direction:column\">\n");
         for (const RunResult& run : runs_) {
             const Look& look = look_of(run);
@@ -276,13 +276,13 @@ class Report {
         };
         constexpr std::string_view rope = "stroke=\"currentColor\" stroke-width=\"1.3\"";
         constexpr std::string_view thin = "stroke=\"currentColor\" stroke-opacity=\".45\" stroke-dasharray=\"3 3\"";
-        constexpr std::string_view measure = "stroke=\"#0072b2\" stroke-width=\"1.4\" fill=\"none\"";
-        constexpr std::string_view arrow = "stroke=\"#0072b2\" stroke-width=\"1.4\" marker-end=\"url(#tip)\"";
+        constexpr std::string_view measure = "stroke=\"#1079bd\" stroke-width=\"1.4\" fill=\"none\"";
+        constexpr std::string_view arrow = "stroke=\"#1079bd\" stroke-width=\"1.4\" marker-end=\"url(#tip)\"";
 
         put("<svg viewBox=\"0 0 {0:g} {1:g}\" role=\"img\" aria-label=\"Crane at rest\" font-size=\"15\" "
             "fill=\"currentColor\"><defs><marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" "
             "markerWidth=\"7\" markerHeight=\"7\" orient=\"auto-start-reverse\"><path d=\"M0,0L8,4L0,8z\" "
-            "fill=\"#0072b2\"/></marker></defs>\n",
+            "fill=\"#1079bd\"/></marker></defs>\n",
             width_px, height_px);
         const Eigen::Vector2d butt = at(points.boom_butt);
         const Eigen::Vector2d tip = at(points.boom_tip);
@@ -311,7 +311,7 @@ class Report {
         const Eigen::Vector2d rope_along = (tip - at(anchor)).normalized();
         const Eigen::Vector2d piston = at(anchor) + 34.0 * rope_along;
         const double rope_deg = std::atan2(rope_along.y(), rope_along.x()) * 180.0 / std::numbers::pi;
-        put("<rect x=\"-11\" y=\"-4.5\" width=\"22\" height=\"9\" rx=\"2\" fill=\"#0072b2\" "
+        put("<rect x=\"-11\" y=\"-4.5\" width=\"22\" height=\"9\" rx=\"2\" fill=\"#1079bd\" "
             "transform=\"translate({:.1f},{:.1f}) rotate({:.1f})\"/>\n",
             piston.x(), piston.y(), rope_deg);
         label({piston.x() - 12.0, piston.y() - 8.0}, "piston", "end");
@@ -354,10 +354,17 @@ class Report {
     }
 
     void put_table() {
-        put("<section>\n<h2>Figures</h2>\n<p class=\"soft\">Beside each value its ratio to the uncontrolled run; the "
-            "least of a row is bold{}.</p>\n<div class=\"table\"><table>\n<thead><tr><th>figure</th><th>unit</th>",
-            law_wins() ? ", the law that leaves least energy is tinted" : "");
-        const auto tint = [&](const RunResult& run) { return law_wins() && &run == &best_ ? "best" : ""; };
+        put("<section>\n<h2>Figures</h2>\n");
+        if (runs_.size() > 1) {
+            put("<p class=\"soft\">{}The least of a row is bold{}.</p>\n",
+                uncontrolled_ != nullptr ? "Beside each value stands its ratio to the uncontrolled run. " : "",
+                law_wins() ? ", the law that leaves least energy is tinted" : "");
+        }
+        put("<div class=\"table\"><table{}>\n<thead><tr><th>figure</th><th>unit</th>",
+            runs_.size() > 1 ? " class=\"many\"" : "");
+        const auto tint = [&](const RunResult& run) {
+            return runs_.size() > 1 && law_wins() && &run == &best_ ? "best" : "";
+        };
         for (const RunResult& run : runs_) {
             put("<th class=\"{}\"><i class=\"swatch\" style=\"background:{}\"></i>{}</th>", tint(run),
                 look_of(run).colour, look_of(run).title);
