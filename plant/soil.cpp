@@ -37,7 +37,7 @@ double Soil::contact_fraction(double height_m, double tilt_rad, double sin_phi2)
     // Below this tilt the ratio R1 / sin|phi2| carries no information (model page, section 3).
     constexpr double level_rad = 1e-12;
     if (std::abs(tilt_rad) < level_rad) {
-        return height_m >= 0.0 ? 0.0 : 1.0;
+        return height_m < 0.0 ? 1.0 : 0.0;
     }
     const double f_m = std::clamp(-height_m / std::abs(sin_phi2), -track_half_length_m_, track_half_length_m_);
     return 0.5 * (1.0 + f_m / track_half_length_m_);
