@@ -56,7 +56,6 @@ enum class Verdict { aim, must, missed, absent, disagree };
 [[nodiscard]] std::vector<Row> dynamics_rows();
 [[nodiscard]] std::vector<Row> integration_rows();
 [[nodiscard]] std::vector<Row> lockstep_rows();
-[[nodiscard]] std::vector<Row> thread_rows();
 [[nodiscard]] std::vector<Row> telemetry_rows();
 
 }  // namespace steadyboom::hil::benchmark

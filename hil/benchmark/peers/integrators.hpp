@@ -14,7 +14,7 @@ extern const Integrate odeint_with_eigen;
 extern const Integrate odeint_with_array;
 
 /// GSL's rk4 by gsl_odeiv2_driver_apply_fixed_step. This stepper always estimates its error by doubling: a step of h is
-/// two steps of h/2, whose result it returns, and one of h to compare, 11 right-hand sides in all. nullptr without GSL.
+/// two steps of h/2, whose result it returns, and one of h to compare, 12 right-hand sides in all. nullptr without GSL.
 extern const Integrate gsl_rk4;
 
 }  // namespace steadyboom::hil::benchmark
