@@ -9,7 +9,7 @@ namespace steadyboom::controllers {
 /// What the observer assumes beyond the crane model.
 struct ObserverConfig {
     double period_s = 0.005;          ///< of the control tick
-    int substeps = 4;                 ///< Runge-Kutta steps of the embedded model per tick
+    int substeps = 2;                 ///< Runge-Kutta steps of the embedded model per tick
     plant::SensorVector sensor_sigma = plant::SensorVector::Zero();  ///< noise and quantisation, units of Sensor
 };
 
