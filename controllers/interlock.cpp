@@ -15,9 +15,14 @@ using plant::ValveState;
 
 namespace {
 
-constexpr std::array required_channels = {
-    plant::strain_lower_microstrain, plant::strain_upper_microstrain, plant::boom_angle_rad, plant::line_tension_N,
-    plant::line_angle_rad,           plant::piston_m,                 plant::spool_m,        plant::load_pressure_Pa};
+constexpr std::array required_channels = {plant::strain_lower_microstrain,
+                                          plant::strain_upper_microstrain,
+                                          plant::boom_angle_rad,
+                                          plant::line_tension_N,
+                                          plant::line_angle_rad,
+                                          plant::piston_m,
+                                          plant::spool_m,
+                                          plant::load_pressure_Pa};
 constexpr std::uint32_t max_age_ticks = 3;
 constexpr std::uint32_t max_mismatch_ticks = 5;
 constexpr std::uint32_t max_send_failures = 2;
@@ -45,9 +50,12 @@ constexpr std::array reason_texts = {
 /// The valve's own state that a commanded mode must lead to.
 ValveState expected_state(ValveMode mode) noexcept {
     switch (mode) {
-        case ValveMode::disabled: return ValveState::disabled;
-        case ValveMode::hold: return ValveState::hold;
-        case ValveMode::active: return ValveState::active;
+        case ValveMode::disabled:
+            return ValveState::disabled;
+        case ValveMode::hold:
+            return ValveState::hold;
+        case ValveMode::active:
+            return ValveState::active;
     }
     return ValveState::not_ready;
 }

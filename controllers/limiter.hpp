@@ -5,9 +5,9 @@
 namespace steadyboom::controllers {
 
 struct LimiterConfig {
-    double max_opening_m = 0.0;   ///< largest |opening|
-    double max_slew_m_s = 0.0;    ///< largest change of the opening per second
-    double period_s = 0.0;        ///< of the control tick
+    double max_opening_m = 0.0;  ///< largest |opening|
+    double max_slew_m_s = 0.0;   ///< largest change of the opening per second
+    double period_s = 0.0;       ///< of the control tick
 };
 
 /// Performance limits on a law's command, one after the other in this order: finite, permission, authority, absolute,

@@ -8,8 +8,8 @@ namespace steadyboom::controllers {
 
 /// What the observer assumes beyond the crane model.
 struct ObserverConfig {
-    double period_s = 0.005;          ///< of the control tick
-    int substeps = 2;                 ///< Runge-Kutta steps of the embedded model per tick
+    double period_s = 0.005;  ///< of the control tick
+    int substeps = 2;         ///< Runge-Kutta steps of the embedded model per tick
     plant::SensorVector sensor_sigma = plant::SensorVector::Zero();  ///< noise and quantisation, units of Sensor
 };
 

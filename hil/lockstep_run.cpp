@@ -58,8 +58,7 @@ runtime::ControlTickConfig control_config(const RunOptions& options) {
     return {.crane = controllers_copy.crane,
             .law = options.law,
             .gains = controllers_copy.gains,
-            .network = {.spool_travel_m = actuator.spool_travel_m,
-                        .period_ns = std::llround(1e9 / options.rate_Hz)},
+            .network = {.spool_travel_m = actuator.spool_travel_m, .period_ns = std::llround(1e9 / options.rate_Hz)},
             .max_opening_m = actuator.spool_travel_m,
             .max_slew_m_s = max_slew_m_s};
 }
@@ -131,15 +130,23 @@ struct LockstepBench::Parts {
 LockstepBench::LockstepBench(const RunOptions& options) : parts_(std::make_unique<Parts>(options)) {}
 LockstepBench::~LockstepBench() = default;
 
-bool LockstepBench::finished() const noexcept { return parts_->k > parts_->last_tick; }
+bool LockstepBench::finished() const noexcept {
+    return parts_->k > parts_->last_tick;
+}
 
 double LockstepBench::next_t_s() const noexcept {
     return static_cast<double>(parts_->k - parts_->brake_tick) * parts_->period_s;
 }
 
-VirtualCrane& LockstepBench::crane() noexcept { return parts_->crane; }
-runtime::OperatorMailbox& LockstepBench::mailbox() noexcept { return parts_->mailbox; }
-const std::vector<RunTick>& LockstepBench::ticks() const noexcept { return parts_->result.ticks; }
+VirtualCrane& LockstepBench::crane() noexcept {
+    return parts_->crane;
+}
+runtime::OperatorMailbox& LockstepBench::mailbox() noexcept {
+    return parts_->mailbox;
+}
+const std::vector<RunTick>& LockstepBench::ticks() const noexcept {
+    return parts_->result.ticks;
+}
 
 void LockstepBench::step() {
     Parts& p = *parts_;

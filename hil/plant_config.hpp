@@ -18,9 +18,9 @@ struct PlantConfig {
     int bit_rate_bit_s = 500'000;  ///< of the interface
     double rate_Hz = 200.0;        ///< of the controller's ticks, for the network's timing
 
-    int seed = 1;             ///< of the sensor noise
-    double standing_s = 5.0;  ///< from the start to the brake event
-    double duration_s = 10.0; ///< from the brake event to the end of the program
+    int seed = 1;              ///< of the sensor noise
+    double standing_s = 5.0;   ///< from the start to the brake event
+    double duration_s = 10.0;  ///< from the brake event to the end of the program
 
     int realtime_priority = 70;  ///< SCHED_FIFO, 1 to 99; 0: ordinary scheduling
     int realtime_cpu = -1;       ///< pin to it; -1: any

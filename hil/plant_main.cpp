@@ -5,9 +5,9 @@
 #include <csignal>
 #include <exception>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include "drivers/socketcan_bus.hpp"
 #include "hil/plant_config.hpp"
@@ -34,7 +34,9 @@ constexpr std::uint64_t most_wakes_behind = 200;
 
 std::atomic<bool> stop_requested{false};
 
-void request_stop(int) { stop_requested.store(true, std::memory_order_relaxed); }
+void request_stop(int) {
+    stop_requested.store(true, std::memory_order_relaxed);
+}
 
 hil::PlantRecord record_of(const hil::TruthSample& truth, std::uint64_t step, std::int64_t time_ns,
                            std::uint64_t valve_timeouts) {
@@ -66,9 +68,7 @@ int stand_in_for_the_crane(const hil::PlantConfig& config) {
 
     const auto standing_steps = std::llround(config.standing_s * 1e9 / static_cast<double>(step_ns));
     const auto last_step = standing_steps + std::llround(config.duration_s * 1e9 / static_cast<double>(step_ns));
-    const auto t_s = [&](std::int64_t step) {
-        return 1e-9 * static_cast<double>((step - standing_steps) * step_ns);
-    };
+    const auto t_s = [&](std::int64_t step) { return 1e-9 * static_cast<double>((step - standing_steps) * step_ns); };
 
     const runtime::RealtimeGrant grant = runtime::become_realtime(
         {.policy = config.realtime_priority > 0 ? runtime::SchedulingPolicy::fifo : runtime::SchedulingPolicy::other,
@@ -81,8 +81,8 @@ int stand_in_for_the_crane(const hil::PlantConfig& config) {
     runtime::MonotonicClock clock;
     const std::int64_t epoch_ns = clock.now_ns() + wake_ns;
     runtime::PeriodicLoop loop(clock, wake_ns, epoch_ns);
-    spdlog::info("{} on {}: brake event {} s from now, end {} s after it; {}", config.crane_case.name,
-                 config.interface, config.standing_s, config.duration_s, grant.summary());
+    spdlog::info("{} on {}: brake event {} s from now, end {} s after it; {}", config.crane_case.name, config.interface,
+                 config.standing_s, config.duration_s, grant.summary());
     std::array<drivers::CanFrame, 512> frames;
     std::int64_t step = 0;
     ring.push(record_of(crane.truth(t_s(0)), 0, epoch_ns, 0));
@@ -118,9 +118,10 @@ int stand_in_for_the_crane(const hil::PlantConfig& config) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("The virtual crane on a CAN interface: devices, sensors, valve and the true crane behind them.\n"
-                 "Exit codes: 0 done or stopped by SIGTERM or SIGINT, 1 failed, 2 bad input.",
-                 "steadyboom-plant");
+    CLI::App app(
+        "The virtual crane on a CAN interface: devices, sensors, valve and the true crane behind them.\n"
+        "Exit codes: 0 done or stopped by SIGTERM or SIGINT, 1 failed, 2 bad input.",
+        "steadyboom-plant");
     app.set_version_flag("--version", "steadyboom-plant " STEADYBOOM_VERSION);
     std::string path;
     app.add_option("--config", path, "Configuration file; its form: hil/plant.toml")->required();

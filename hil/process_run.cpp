@@ -277,17 +277,18 @@ RunResult run_on_interface(const RunOptions& options, const std::string& interfa
     controller_process.ask_to_end();
     controller_process.expect_end(milliseconds(5000));
     drain();
-    const std::uint64_t lost =
-        plant_ring.lost() + tick_ring.lost() + log.status().receive_overflow_frames;
+    const std::uint64_t lost = plant_ring.lost() + tick_ring.lost() + log.status().receive_overflow_frames;
     if (lost != 0) {
-        throw std::runtime_error(std::to_string(lost) + " records or frames were lost by the bench; the machine is "
+        throw std::runtime_error(std::to_string(lost) +
+                                 " records or frames were lost by the bench; the machine is "
                                  "too busy for a real-time run");
     }
     if (truth.empty()) {
         throw std::runtime_error("steadyboom-plant left no record");
     }
 
-    // Each tick meets the true crane of the same instant; ticks outside the crane's time are the start and the farewell.
+    // Each tick meets the true crane of the same instant; ticks outside the crane's time are the start and the
+    // farewell.
     result.epoch_ns = truth.front().time_ns;
     result.stayed_engaged = true;
     std::uint32_t reasons = 0;

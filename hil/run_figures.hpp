@@ -37,8 +37,8 @@ struct FigureRow {
     std::string_view label;  ///< for people
     std::string_view unit;   ///< as shown to people
     double scale = 1.0;      ///< from SI to `unit`
-    double RunFigures::* value = nullptr;
-    bool compared = true;    ///< whether its ratio to the uncontrolled run says anything
+    double RunFigures::*value = nullptr;
+    bool compared = true;  ///< whether its ratio to the uncontrolled run says anything
 };
 inline constexpr std::array figure_rows{
     FigureRow{"peak_R1_m", "peak R1", "mm", 1e3, &RunFigures::peak_R1_m},

@@ -18,8 +18,8 @@ struct RunOptions {
     Case crane_case;  ///< the true crane, what happens to it, and the gains
     controllers::LawKind law = controllers::LawKind::none;
     double rate_Hz = 200.0;
-    double duration_s = 10.0;  ///< after the brake event
-    std::uint64_t seed = 1;    ///< of the sensor noise
+    double duration_s = 10.0;             ///< after the brake event
+    std::uint64_t seed = 1;               ///< of the sensor noise
     std::vector<std::string> mismatches;  ///< KEY=FACTOR, falsify the controller's copy of the crane
 };
 
@@ -33,13 +33,13 @@ struct RunTick {
 /// A run that came to its end. t_s runs from -standing_s; the brake event is at t_s = 0.
 struct RunResult {
     RunOptions options;
-    std::string bus;               ///< "loopback" or the interface
+    std::string bus;  ///< "loopback" or the interface
     RunFigures figures;
     std::vector<RunTick> ticks;
     std::vector<drivers::CanFrame> frames;  ///< everything on the bus, in order, stamped with steady time
-    std::int64_t epoch_ns = 0;     ///< steady time of t_s = -standing_s
-    bool stayed_engaged = false;   ///< in command from before the brake event to the end
-    std::string trouble;           ///< why not, in words; empty otherwise
+    std::int64_t epoch_ns = 0;              ///< steady time of t_s = -standing_s
+    bool stayed_engaged = false;            ///< in command from before the brake event to the end
+    std::string trouble;                    ///< why not, in words; empty otherwise
 
     static constexpr double standing_s = 5.0;  ///< at equilibrium before the brake event: arm, engage, settle
 };

@@ -13,8 +13,8 @@ TruthSample sample_truth(const plant::CraneDynamics& crane, const plant::CraneSt
             .chord_m = outputs.chord_m,
             .contact_fraction = outputs.contact_fraction,
             .load_pressure_Pa = outputs.load_pressure_Pa,
-            .hydraulic_power_W = crane.actuator().hydraulic_power_W(spool_m, outputs.pendent_tension_N,
-                                                                    equilibrium_tension_N)};
+            .hydraulic_power_W =
+                crane.actuator().hydraulic_power_W(spool_m, outputs.pendent_tension_N, equilibrium_tension_N)};
 }
 
 }  // namespace steadyboom::hil

@@ -70,8 +70,7 @@ void VirtualCrane::advance(std::int64_t now_ns) noexcept {
         derivative.head<state_count>() =
             crane_.derivative(x.head<state_count>(), flows ? crane_.actuator().clamp_opening_m(x[spool_index]) : 0.0);
         derivative[spool_index] = x[spool_rate_index];
-        derivative[spool_rate_index] =
-            valve_.spool_acceleration_m_s2(x[spool_index], x[spool_rate_index], target_m);
+        derivative[spool_rate_index] = valve_.spool_acceleration_m_s2(x[spool_index], x[spool_rate_index], target_m);
         return derivative;
     };
     state_ = runge_kutta_step(rate, 0.0, state_, step_s_);
@@ -82,7 +81,9 @@ void VirtualCrane::advance(std::int64_t now_ns) noexcept {
     }
 }
 
-void VirtualCrane::brake(double rate_m_s) noexcept { state_[velocity_offset + R9_m] = rate_m_s; }
+void VirtualCrane::brake(double rate_m_s) noexcept {
+    state_[velocity_offset + R9_m] = rate_m_s;
+}
 
 TruthSample VirtualCrane::truth(double t_s) const noexcept {
     return sample_truth(crane_, state_.head<state_count>(), state_[spool_index], equilibrium_.pendent_tension_N, t_s);

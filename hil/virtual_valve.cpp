@@ -24,9 +24,15 @@ void VirtualValve::obey(const drivers::ValveOrder& order, std::int64_t now_ns) n
         }
     } else if (state_ != ValveState::fault_hold || order.mode == ValveMode::disabled) {
         switch (order.mode) {
-            case ValveMode::disabled: state_ = ValveState::disabled; break;
-            case ValveMode::hold: state_ = ValveState::hold; break;
-            case ValveMode::active: state_ = ValveState::active; break;
+            case ValveMode::disabled:
+                state_ = ValveState::disabled;
+                break;
+            case ValveMode::hold:
+                state_ = ValveState::hold;
+                break;
+            case ValveMode::active:
+                state_ = ValveState::active;
+                break;
         }
     }
     commanded_m_ = state_ == ValveState::active ? std::clamp(order.set_point_m, -travel_m_, travel_m_) : 0.0;

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "drivers/device_network.hpp"
-#include "plant/crane_parameters.hpp"
 #include "plant/crane_measurement.hpp"
+#include "plant/crane_parameters.hpp"
 
 namespace steadyboom::hil {
 
@@ -29,8 +29,10 @@ class VirtualValve {
     [[nodiscard]] double next_target_m() noexcept;
 
     /// d2(spool)/dt2 in m/s^2: second order with the valve's bandwidth and damping.
-    [[nodiscard]] double spool_acceleration_m_s2(double spool_m, double spool_rate_m_s, double target_m) const noexcept {
-        return omega_rad_s_ * omega_rad_s_ * (target_m - spool_m) - 2.0 * damping_ratio_ * omega_rad_s_ * spool_rate_m_s;
+    [[nodiscard]] double spool_acceleration_m_s2(double spool_m, double spool_rate_m_s,
+                                                 double target_m) const noexcept {
+        return omega_rad_s_ * omega_rad_s_ * (target_m - spool_m) -
+               2.0 * damping_ratio_ * omega_rad_s_ * spool_rate_m_s;
     }
 
     [[nodiscard]] plant::ValveState state() const noexcept { return state_; }

@@ -32,9 +32,9 @@ double Actuator::piston_rate_m_s(double valve_opening_m, double pendent_tension_
                                  double piston_m) const noexcept {
     const double load_pressure = load_pressure_Pa(pendent_tension_N);
     const double c_m2 = pendent_tension_N > 0.0 ? oil_compliance_m2_ : 0.0;
-    const double rate_m_s = (load_flow_m3_s(valve_opening_m, load_pressure) - leakage_m3_s_Pa_ * load_pressure -
-                             c_m2 * pendent_rate_m_s) /
-                            (piston_area_m2_ + c_m2);
+    const double rate_m_s =
+        (load_flow_m3_s(valve_opening_m, load_pressure) - leakage_m3_s_Pa_ * load_pressure - c_m2 * pendent_rate_m_s) /
+        (piston_area_m2_ + c_m2);
     const bool at_stop = std::abs(piston_m) >= piston_travel_m_ && piston_m * rate_m_s > 0.0;
     return at_stop ? 0.0 : rate_m_s;
 }

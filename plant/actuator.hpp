@@ -36,7 +36,9 @@ class Actuator {
     [[nodiscard]] double clamp_piston_m(double piston_m) const noexcept;
 
     /// c as share of the piston area while taut: how much of a pendent stretch the oil's compression gives back.
-    [[nodiscard]] double oil_compliance_share() const noexcept { return oil_compliance_m2_ / (piston_area_m2_ + oil_compliance_m2_); }
+    [[nodiscard]] double oil_compliance_share() const noexcept {
+        return oil_compliance_m2_ / (piston_area_m2_ + oil_compliance_m2_);
+    }
 
   private:
     ValveModel valve_model_;
@@ -48,7 +50,8 @@ class Actuator {
     double spool_travel_m_;
     double piston_travel_m_;
     double supply_pressure_Pa_;
-    double orifice_gain_;  ///< C_d pi D_v / sqrt(sigma), m^2 / sqrt(kg / m^3) * ... so that times X_v sqrt(Pa) it is m^3/s
+    double
+        orifice_gain_;  ///< C_d pi D_v / sqrt(sigma), m^2 / sqrt(kg / m^3) * ... so that times X_v sqrt(Pa) it is m^3/s
 };
 
 }  // namespace steadyboom::plant

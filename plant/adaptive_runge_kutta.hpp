@@ -22,8 +22,8 @@ class AdaptiveRungeKutta {
   public:
     struct Tolerances {
         double relative = 1e-9;
-        State absolute;           ///< one per entry, in the entry's unit
-        double max_step_s = 0.01; ///< keeps the error estimate honest across kinks of the ropes and the soil
+        State absolute;            ///< one per entry, in the entry's unit
+        double max_step_s = 0.01;  ///< keeps the error estimate honest across kinks of the ropes and the soil
     };
 
     AdaptiveRungeKutta(double t_s, const State& state, const Tolerances& tolerances, double first_step_s = 1e-4)
@@ -46,8 +46,9 @@ class AdaptiveRungeKutta {
         for (;;) {
             const double h = std::min(step_s_, tolerances_.max_step_s);
             if (!(h > 1e-14 * std::max(1.0, std::abs(end_s_)))) {
-                throw IntegrationError("the adaptive step shrank to nothing; the state is not finite or the tolerance "
-                                       "cannot be met");
+                throw IntegrationError(
+                    "the adaptive step shrank to nothing; the state is not finite or the tolerance "
+                    "cannot be met");
             }
             const State next = stages(rate, h);
             const double error = error_norm(next, h);
@@ -112,8 +113,7 @@ class AdaptiveRungeKutta {
     [[nodiscard]] double error_norm(const State& next, double h) const {
         const State error = h * (71.0 / 57600 * k_[0] - 71.0 / 16695 * k_[2] + 71.0 / 1920 * k_[3] -
                                  17253.0 / 339200 * k_[4] + 22.0 / 525 * k_[5] - 1.0 / 40 * k_[6]);
-        const State scale =
-            tolerances_.absolute + tolerances_.relative * end_.cwiseAbs().cwiseMax(next.cwiseAbs());
+        const State scale = tolerances_.absolute + tolerances_.relative * end_.cwiseAbs().cwiseMax(next.cwiseAbs());
         // A plain maxCoeff may pass over a NaN.
         return error.cwiseQuotient(scale).cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();
     }

@@ -13,8 +13,8 @@ namespace steadyboom::plant {
 struct Boom {
     double length_m;
     double inverse_link_length_1_m;
-    double bending_stiffness_N_m;     ///< 3 K_B / L_B^2
-    double damping_N_s_m;             ///< C_B / L_B^2
+    double bending_stiffness_N_m;  ///< 3 K_B / L_B^2
+    double damping_N_s_m;          ///< C_B / L_B^2
 
     explicit Boom(const StructureParameters& structure);
 

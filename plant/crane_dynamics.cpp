@@ -8,8 +8,8 @@ namespace steadyboom::plant {
 
 namespace {
 
-// Sums over the three links of chord shares c = (1/6, 1/2, 5/6) and joint shares d1 = (1/2, 1/2, 0), d2 = (0, 1/2, 1/2):
-// a link's centre lies at c R8 along the chord and d1 q1 + d2 q2 below it.
+// Sums over the three links of chord shares c = (1/6, 1/2, 5/6) and joint shares d1 = (1/2, 1/2, 0), d2 = (0, 1/2,
+// 1/2): a link's centre lies at c R8 along the chord and d1 q1 + d2 q2 below it.
 constexpr double links = 3.0;
 constexpr double sum_c = 3.0 / 2.0;
 constexpr double sum_cc = 35.0 / 36.0;
@@ -21,29 +21,37 @@ constexpr double sum_dd_cross = 1.0 / 4.0;
 struct Plane {
     double x, y;
 };
-constexpr double dot(Plane a, Plane b) noexcept { return a.x * b.x + a.y * b.y; }
-constexpr Plane operator+(Plane a, Plane b) noexcept { return {a.x + b.x, a.y + b.y}; }
-constexpr Plane operator*(double s, Plane a) noexcept { return {s * a.x, s * a.y}; }
+constexpr double dot(Plane a, Plane b) noexcept {
+    return a.x * b.x + a.y * b.y;
+}
+constexpr Plane operator+(Plane a, Plane b) noexcept {
+    return {a.x + b.x, a.y + b.y};
+}
+constexpr Plane operator*(double s, Plane a) noexcept {
+    return {s * a.x, s * a.y};
+}
 
 /// A rope's tension; std::max(0.0, NaN) would be 0 and hide a broken state, this order keeps it.
-constexpr double pull_only_N(double force_N) noexcept { return std::max(force_N, 0.0); }
+constexpr double pull_only_N(double force_N) noexcept {
+    return std::max(force_N, 0.0);
+}
 
 }  // namespace
 
 /// Directions, lever arms and chord derivatives of one configuration; the columns of the Jacobians are built from them.
 struct CraneDynamics::Kinematics {
     double sin_phi2, cos_phi2;
-    Plane e6, n6;                     ///< along the boom chord, perpendicular to it (positive downwards)
-    Plane u9, w9;                     ///< along the load line, direction in which phi9 moves the load
+    Plane e6, n6;                        ///< along the boom chord, perpendicular to it (positive downwards)
+    Plane u9, w9;                        ///< along the load line, direction in which phi9 moves the load
     Plane track_arm, car_arm, butt_arm;  ///< dT/dphi2, dC/dphi2, dB0/dphi2, m
-    double q1, q2, R8, R9;            ///< m
-    double R8_1, R8_2;                ///< dR8/dq1, dR8/dq2
+    double q1, q2, R8, R9;               ///< m
+    double R8_1, R8_2;                   ///< dR8/dq1, dR8/dq2
 };
 
 struct CraneDynamics::Pendent {
-    double length_m;       ///< L_p
-    double slope_R8;       ///< dL_p/dR8
-    double slope_phiB_m;   ///< dL_p/dphi_B
+    double length_m;      ///< L_p
+    double slope_R8;      ///< dL_p/dR8
+    double slope_phiB_m;  ///< dL_p/dphi_B
     double tension_N;
 };
 
@@ -105,8 +113,8 @@ CraneDynamics::Pendent CraneDynamics::pendent(const Kinematics& k, double piston
     return {.length_m = length_m,
             .slope_R8 = (k.R8 - R_d * cos_B) * inverse_length_1_m,
             .slope_phiB_m = k.R8 * R_d * sin_B * inverse_length_1_m,
-            .tension_N = pull_only_N(parameters_.ropes.pendent_stiffness_N_m *
-                                     (length_m - free_pendent_length_m_ + piston_m))};
+            .tension_N =
+                pull_only_N(parameters_.ropes.pendent_stiffness_N_m * (length_m - free_pendent_length_m_ + piston_m))};
 }
 
 double CraneDynamics::pendent_rate_m_s(const Kinematics& k, const Pendent& pendent,
@@ -169,8 +177,7 @@ MassMatrix CraneDynamics::mass_matrix(const Kinematics& k) const noexcept {
     M(phi6_rad, q2_m) = m_B * (k.R8_2 * sum_c_b - sum_c_d2 * k.R8);
     M(phi9_rad, q2_m) = k.R8_2 * e_swing;
 
-    M(phi6_rad, phi6_rad) =
-        along_along * k.R8 * k.R8 + sum_dd_same * m_B * (k.q1 * k.q1 + k.q2 * k.q2 + k.q1 * k.q2);
+    M(phi6_rad, phi6_rad) = along_along * k.R8 * k.R8 + sum_dd_same * m_B * (k.q1 * k.q1 + k.q2 * k.q2 + k.q1 * k.q2);
     M(phi9_rad, phi6_rad) = -k.R8 * n_swing;
 
     M(phi9_rad, phi9_rad) = m_L * k.R9 * k.R9;
@@ -219,8 +226,8 @@ Coordinates CraneDynamics::force(const Kinematics& k, const Pendent& pendent, co
     const double butt_n = m_B * dot(butt, k.n6);
 
     const SoilReaction soil = soil_.reaction(p[R1_m], p[phi2_rad], k.sin_phi2, v[R1_m], w2);
-    const double line_tension_N = pull_only_N(parameters_.ropes.load_line_stiffness_N_m *
-                                              (k.R9 - parameters_.ropes.load_line_length_m));
+    const double line_tension_N =
+        pull_only_N(parameters_.ropes.load_line_stiffness_N_m * (k.R9 - parameters_.ropes.load_line_length_m));
     const double pull_R8 = pendent.tension_N * pendent.slope_R8;
     const double pull_phiB = pendent.tension_N * pendent.slope_phiB_m;
     const Plane hung = m_L * load + m_B * (links * butt + links_bias);
@@ -269,8 +276,8 @@ CraneOutputs CraneDynamics::outputs(const CraneState& state) const noexcept {
     const Kinematics k = kinematics(coordinates_of(state));
     const Pendent line = pendent(k, actuator_.clamp_piston_m(state[piston_index]));
     return {.pendent_tension_N = line.tension_N,
-            .load_line_tension_N = pull_only_N(parameters_.ropes.load_line_stiffness_N_m *
-                                               (k.R9 - parameters_.ropes.load_line_length_m)),
+            .load_line_tension_N =
+                pull_only_N(parameters_.ropes.load_line_stiffness_N_m * (k.R9 - parameters_.ropes.load_line_length_m)),
             .pendent_length_m = line.length_m,
             .pendent_rate_m_s = pendent_rate_m_s(k, line, velocities_of(state)),
             .chord_m = k.R8,

@@ -13,11 +13,11 @@ namespace steadyboom::plant {
 struct CraneOutputs {
     double pendent_tension_N;
     double load_line_tension_N;
-    double pendent_length_m;      ///< L_p, anchor to tip, without the piston
-    double pendent_rate_m_s;      ///< dL_p/dt
-    double chord_m;               ///< R8
-    double contact_fraction;      ///< beta
-    double load_pressure_Pa;      ///< P_L
+    double pendent_length_m;  ///< L_p, anchor to tip, without the piston
+    double pendent_rate_m_s;  ///< dL_p/dt
+    double chord_m;           ///< R8
+    double contact_fraction;  ///< beta
+    double load_pressure_Pa;  ///< P_L
 };
 
 /// Where each mass is, in m, in the frame of the ground: x forward, y up, origin on the undisturbed track plane.

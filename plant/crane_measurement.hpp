@@ -45,8 +45,8 @@ struct CraneMeasurement {
     std::array<std::uint32_t, sensor_count> age_ticks = filled(never);  ///< ticks since a sample came; 0 = this tick
     std::array<bool, sensor_count> valid{};  ///< the device says the sample is good and it passed the range check
     ValveState valve_state = ValveState::not_ready;
-    bool cutoff_open = false;       ///< safety input: the cut-off valve is open
-    bool emergency_stop_healthy = false;  ///< safety input: false when pressed, unwired or never heard
+    bool cutoff_open = false;                       ///< safety input: the cut-off valve is open
+    bool emergency_stop_healthy = false;            ///< safety input: false when pressed, unwired or never heard
     std::uint32_t safety_inputs_age_ticks = never;  ///< ticks since the safety inputs came
 
     /// A sample of this channel came with this tick and is good.

@@ -26,11 +26,17 @@ inline constexpr int piston_index = 2 * coordinate_count;  ///< X_p in m, positi
 inline constexpr int state_count = piston_index + 1;
 using CraneState = Eigen::Matrix<double, state_count, 1>;
 
-[[nodiscard]] inline auto coordinates_of(const CraneState& state) { return state.head<coordinate_count>(); }
-[[nodiscard]] inline auto coordinates_of(CraneState& state) { return state.head<coordinate_count>(); }
+[[nodiscard]] inline auto coordinates_of(const CraneState& state) {
+    return state.head<coordinate_count>();
+}
+[[nodiscard]] inline auto coordinates_of(CraneState& state) {
+    return state.head<coordinate_count>();
+}
 [[nodiscard]] inline auto velocities_of(const CraneState& state) {
     return state.segment<coordinate_count>(velocity_offset);
 }
-[[nodiscard]] inline auto velocities_of(CraneState& state) { return state.segment<coordinate_count>(velocity_offset); }
+[[nodiscard]] inline auto velocities_of(CraneState& state) {
+    return state.segment<coordinate_count>(velocity_offset);
+}
 
 }  // namespace steadyboom::plant

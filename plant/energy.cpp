@@ -45,8 +45,8 @@ NonConservativePower non_conservative_power(const CraneDynamics& crane, const Cr
                                             double valve_opening_m) {
     const Coordinates v = velocities_of(state);
     const CraneOutputs outputs = crane.outputs(state);
-    const SoilReaction soil = crane.soil().reaction(state[R1_m], state[phi2_rad], std::sin(state[phi2_rad]), v[R1_m],
-                                                    v[phi2_rad]);
+    const SoilReaction soil =
+        crane.soil().reaction(state[R1_m], state[phi2_rad], std::sin(state[phi2_rad]), v[R1_m], v[phi2_rad]);
     const double piston_rate_m_s = crane.actuator().piston_rate_m_s(valve_opening_m, outputs.pendent_tension_N,
                                                                     outputs.pendent_rate_m_s, state[piston_index]);
     return {.boom_damping_W = crane.boom().damping_force_N(v[q1_m], v[q2_m]) * v[q1_m] +

@@ -42,14 +42,16 @@ Equilibrium find_equilibrium(const CraneDynamics& crane) {
     // Where the ropes are stiff, rounding of their lengths keeps the forces from balancing any better.
     constexpr double acceptable = 1e-9;
     const StructureParameters& structure = crane.parameters().structure;
-    const double weight_N = (structure.track_mass_kg + structure.car_body_mass_kg +
-                             3.0 * structure.boom_link_mass_kg + structure.load_mass_kg) *
+    const double weight_N = (structure.track_mass_kg + structure.car_body_mass_kg + 3.0 * structure.boom_link_mass_kg +
+                             structure.load_mass_kg) *
                             gravity_m_s2;
     const auto residual_of = [&](const Coordinates& p) {
-        return crane.generalized_force(p, Coordinates::Zero(), 0.0).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / weight_N;
+        return crane.generalized_force(p, Coordinates::Zero(), 0.0).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() /
+               weight_N;
     };
 
-    // From hanging weights and springs alone: ropes already taut and tracks already bearing, so that no gradient is flat.
+    // From hanging weights and springs alone: ropes already taut and tracks already bearing, so that no gradient is
+    // flat.
     Coordinates p = Coordinates::Zero();
     p[R1_m] = -weight_N / crane.soil().coefficients(1.0).vertical_stiffness_N_m;
     p[R9_m] = crane.parameters().ropes.load_line_length_m +

@@ -9,10 +9,10 @@ namespace steadyboom::plant {
 
 /// The static equilibrium and how well it was met.
 struct Equilibrium {
-    CraneState state;             ///< velocities and piston are zero
+    CraneState state;  ///< velocities and piston are zero
     double pendent_tension_N;
     double load_line_tension_N;
-    double residual;              ///< largest |Q_i| over the weight (times 1 m for the angles), dimensionless
+    double residual;  ///< largest |Q_i| over the weight (times 1 m for the angles), dimensionless
     int iterations;
 };
 
@@ -27,8 +27,8 @@ struct EquilibriumError : std::runtime_error {
 /// rounding leaves with stiff ropes). Throws EquilibriumError otherwise; never returns an unconverged state.
 [[nodiscard]] Equilibrium find_equilibrium(const CraneDynamics& crane);
 
-/// -dQ/dp at rest with the piston fixed at X_p = 0, central differences, symmetrised; N/m, N, N m as the coordinates ask.
-/// The contact with the soil is what it is at `coordinates`.
+/// -dQ/dp at rest with the piston fixed at X_p = 0, central differences, symmetrised; N/m, N, N m as the coordinates
+/// ask. The contact with the soil is what it is at `coordinates`.
 [[nodiscard]] MassMatrix stiffness_matrix(const CraneDynamics& crane, const Coordinates& coordinates);
 
 }  // namespace steadyboom::plant

@@ -8,9 +8,9 @@ namespace steadyboom::plant {
 
 /// One linear mode about an equilibrium.
 struct LinearMode {
-    double frequency_Hz;    ///< |lambda| / (2 pi)
-    double damping_ratio;   ///< -Re(lambda) / |lambda|; 1 for a mode that does not oscillate
-    Coordinate dominant;    ///< coordinate with the largest share of the mode's kinetic energy
+    double frequency_Hz;   ///< |lambda| / (2 pi)
+    double damping_ratio;  ///< -Re(lambda) / |lambda|; 1 for a mode that does not oscillate
+    Coordinate dominant;   ///< coordinate with the largest share of the mode's kinetic energy
 };
 
 /// d(derivative)/d(state) at `state`, valve at `valve_opening_m`; central differences, 15x15.

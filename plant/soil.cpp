@@ -18,8 +18,7 @@ Soil::Soil(const SoilParameters& soil) : track_half_length_m_(soil.track_half_le
     full_contact_ = {.vertical_stiffness_N_m = 4.0 * G * R_ev / (1.0 - nu),
                      .vertical_damping_N_s_m = 3.4 * R_ev * R_ev * impedance / (1.0 - nu),
                      .rocking_stiffness_N_m_rad = 2.52 * G * R_ephi * R_ephi * R_ephi / (1.0 - nu),
-                     .rocking_damping_N_m_s_rad =
-                         0.136 * R_ephi * R_ephi * R_ephi * R_ephi * impedance / (1.13 - nu)};
+                     .rocking_damping_N_m_s_rad = 0.136 * R_ephi * R_ephi * R_ephi * R_ephi * impedance / (1.13 - nu)};
 }
 
 Soil::Coefficients Soil::coefficients(double contact_fraction) const noexcept {

@@ -6,10 +6,10 @@ namespace steadyboom::plant {
 
 /// What the soil does to the tracks at one instant.
 struct SoilReaction {
-    double contact_fraction;     ///< beta, 1 while the whole track bears, 0 when lifted off
-    double contact_offset_m;     ///< e, centre of the remaining contact, positive forward
-    double vertical_N;           ///< F_V >= 0, upwards on R1
-    double rocking_N_m;          ///< generalized force on phi2, counter-clockwise
+    double contact_fraction;  ///< beta, 1 while the whole track bears, 0 when lifted off
+    double contact_offset_m;  ///< e, centre of the remaining contact, positive forward
+    double vertical_N;        ///< F_V >= 0, upwards on R1
+    double rocking_N_m;       ///< generalized force on phi2, counter-clockwise
 };
 
 /// Elastic half-space under a track that may tilt and lift (thesis 3.1.3, misprints decided on the model page):

@@ -12,12 +12,12 @@ struct ValveCommand {
 /// Why a command was changed on its way to the valve. Bits; several may hold at once.
 enum LimitReason : std::uint32_t {
     limit_none = 0,
-    limit_not_finite = 1U << 0,      ///< the law gave NaN or infinity: neutral
-    limit_no_permission = 1U << 1,   ///< the interlock does not permit motion: neutral
-    limit_authority = 1U << 2,       ///< scaled while authority ramps up
-    limit_absolute = 1U << 3,        ///< clipped to the largest opening
-    limit_slew = 1U << 4,            ///< clipped to the largest change per tick
-    limit_guard = 1U << 5,           ///< the guard rejected the command: neutral
+    limit_not_finite = 1U << 0,     ///< the law gave NaN or infinity: neutral
+    limit_no_permission = 1U << 1,  ///< the interlock does not permit motion: neutral
+    limit_authority = 1U << 2,      ///< scaled while authority ramps up
+    limit_absolute = 1U << 3,       ///< clipped to the largest opening
+    limit_slew = 1U << 4,           ///< clipped to the largest change per tick
+    limit_guard = 1U << 5,          ///< the guard rejected the command: neutral
 };
 
 /// Control word of a CiA 408 valve: what the valve is asked to be.

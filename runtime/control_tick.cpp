@@ -13,7 +13,9 @@ using controllers::OperatorIntent;
 
 namespace {
 
-double period_s(const ControlTickConfig& config) { return 1e-9 * static_cast<double>(config.network.period_ns); }
+double period_s(const ControlTickConfig& config) {
+    return 1e-9 * static_cast<double>(config.network.period_ns);
+}
 
 /// Sensor noise plus what the bus's resolution adds (a step's uniform error).
 plant::SensorVector observed_sigma(const plant::CraneParameters& crane, const drivers::DeviceTable& table) {
@@ -43,12 +45,18 @@ int observer_substeps(double tick_period_s) {
 
 OperatorIntent intent_of(OperatorCommand command) noexcept {
     switch (command) {
-        case OperatorCommand::arm: return OperatorIntent::arm;
-        case OperatorCommand::engage: return OperatorIntent::engage;
-        case OperatorCommand::disengage: return OperatorIntent::disengage;
-        case OperatorCommand::reset: return OperatorIntent::reset;
-        case OperatorCommand::stop: return OperatorIntent::stop;
-        case OperatorCommand::status: break;
+        case OperatorCommand::arm:
+            return OperatorIntent::arm;
+        case OperatorCommand::engage:
+            return OperatorIntent::engage;
+        case OperatorCommand::disengage:
+            return OperatorIntent::disengage;
+        case OperatorCommand::reset:
+            return OperatorIntent::reset;
+        case OperatorCommand::stop:
+            return OperatorIntent::stop;
+        case OperatorCommand::status:
+            break;
     }
     return OperatorIntent::none;
 }
@@ -72,14 +80,13 @@ ControlTick::ControlTick(const ControlTickConfig& config, drivers::CanBus& bus, 
       law_(config.law, config.gains, equilibrium_.state),
       linearisation_(config.crane.actuator),
       actuation_lag_s_(actuation_lag_s(config)),
-      limiter_({.max_opening_m = config.max_opening_m,
-                .max_slew_m_s = config.max_slew_m_s,
-                .period_s = period_s(config)}),
+      limiter_(
+          {.max_opening_m = config.max_opening_m, .max_slew_m_s = config.max_slew_m_s, .period_s = period_s(config)}),
       // The guard's limits stand apart from the limiter's: the travel itself, and a step a little above the slew limit,
       // so that rounding never trips it and a limiter that fails does.
-      guard_({.max_opening_m = config.crane.actuator.spool_travel_m,
-              .max_step_m = std::min(1.1 * config.max_slew_m_s * period_s(config),
-                                     config.crane.actuator.spool_travel_m)}),
+      guard_(
+          {.max_opening_m = config.crane.actuator.spool_travel_m,
+           .max_step_m = std::min(1.1 * config.max_slew_m_s * period_s(config), config.crane.actuator.spool_travel_m)}),
       overruns_are_faults_(config.overruns_are_faults) {
     std::ranges::copy(law_.set_point(), record_.setpoint.begin());
 }

@@ -8,10 +8,10 @@
 #include <memory>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
+#include <CLI/CLI.hpp>
 
 #include "drivers/socketcan_bus.hpp"
 #include "runtime/control_tick.hpp"
@@ -33,7 +33,9 @@ constexpr int exit_bad_input = 2;
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
-void request_stop(int) { stop_requested.store(true, std::memory_order_relaxed); }
+void request_stop(int) {
+    stop_requested.store(true, std::memory_order_relaxed);
+}
 
 runtime::ControlTickConfig tick_config(const runtime::ControllerConfig& config) {
     return {.crane = config.crane.crane,
@@ -152,23 +154,25 @@ int control(const runtime::ControllerConfig& config) {
 
     sd_notify(0, "STOPPING=1");
     const runtime::LoopStatistics& statistics = loop.statistics();
-    spdlog::info("{} ticks, {} overruns, {} skipped; wake-up latency p50 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us; "
-                 "execution p50 {:.1f} us, p99.9 {:.1f} us",
-                 statistics.ticks.load(), statistics.overruns.load(), statistics.skipped.load(),
-                 1e-3 * static_cast<double>(statistics.wake_up_latency.quantile_ns(0.5)),
-                 1e-3 * static_cast<double>(statistics.wake_up_latency.quantile_ns(0.99)),
-                 1e-3 * static_cast<double>(statistics.wake_up_latency.quantile_ns(0.999)),
-                 1e-3 * static_cast<double>(statistics.execution_time.quantile_ns(0.5)),
-                 1e-3 * static_cast<double>(statistics.execution_time.quantile_ns(0.999)));
+    spdlog::info(
+        "{} ticks, {} overruns, {} skipped; wake-up latency p50 {:.1f} us, p99 {:.1f} us, p99.9 {:.1f} us; "
+        "execution p50 {:.1f} us, p99.9 {:.1f} us",
+        statistics.ticks.load(), statistics.overruns.load(), statistics.skipped.load(),
+        1e-3 * static_cast<double>(statistics.wake_up_latency.quantile_ns(0.5)),
+        1e-3 * static_cast<double>(statistics.wake_up_latency.quantile_ns(0.99)),
+        1e-3 * static_cast<double>(statistics.wake_up_latency.quantile_ns(0.999)),
+        1e-3 * static_cast<double>(statistics.execution_time.quantile_ns(0.5)),
+        1e-3 * static_cast<double>(statistics.execution_time.quantile_ns(0.999)));
     return exit_done;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Steadyboom's real-time controller: keeps a crane's boom steady through the valve in its pendent.\n"
-                 "Exit codes: 0 stopped by SIGTERM or SIGINT, 1 failed, 2 bad input.",
-                 "steadyboom-controller");
+    CLI::App app(
+        "Steadyboom's real-time controller: keeps a crane's boom steady through the valve in its pendent.\n"
+        "Exit codes: 0 stopped by SIGTERM or SIGINT, 1 failed, 2 bad input.",
+        "steadyboom-controller");
     app.set_version_flag("--version", "steadyboom-controller " STEADYBOOM_VERSION);
     std::string path;
     app.add_option("--config", path, "Configuration file; its form: systemd/controller.toml")->required();

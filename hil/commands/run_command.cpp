@@ -86,7 +86,8 @@ void write_out(const RunCommandOptions& options, std::span<const RunResult> runs
     for (const RunResult& run : runs) {
         const bool asked_for = several || &run == &runs.back();
         if (asked_for) {
-            std::cerr << fmt::format("writing {}\n", (several ? out / controllers::name_of(run.options.law) : out).string());
+            std::cerr << fmt::format("writing {}\n",
+                                     (several ? out / controllers::name_of(run.options.law) : out).string());
             write_run_folder(several ? out / controllers::name_of(run.options.law) : out, run,
                              uncontrolled != nullptr ? &uncontrolled->figures : nullptr);
         }
@@ -110,8 +111,8 @@ int run_case(const RunCommandOptions& options) {
         std::cerr << fmt::format("[{}/{}] {} with law {} on {}\n", runs.size() + 1, laws.size(), run.crane_case.name,
                                  controllers::name_of(law), options.bus);
         const auto begin = std::chrono::steady_clock::now();
-        runs.push_back(run_one(run, options, several ? fs::path(options.out) / controllers::name_of(law)
-                                                     : fs::path(options.out)));
+        runs.push_back(
+            run_one(run, options, several ? fs::path(options.out) / controllers::name_of(law) : fs::path(options.out)));
         const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
         std::cerr << fmt::format("  {:.1f} s of crane in {:.2f} s\n", RunResult::standing_s + run.duration_s,
                                  wall.count());

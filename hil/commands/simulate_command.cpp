@@ -28,8 +28,7 @@ std::string csv_header() {
     for (const std::string_view name : state_names) {
         header += fmt::format(",{}", name);
     }
-    return header +
-           ",valve_m,pendent_tension_N,load_line_tension_N,chord_m,contact_fraction,hydraulic_power_W\n";
+    return header + ",valve_m,pendent_tension_N,load_line_tension_N,chord_m,contact_fraction,hydraulic_power_W\n";
 }
 
 void append_row(std::string& csv, const TruthSample& sample) {
@@ -48,18 +47,17 @@ int simulate_case(const SimulateOptions& options) {
                                  .output_period_s = options.output_period_s};
     simulation.duration_s = options.duration_s.value_or(simulation.crane_case.manoeuvre.duration_s);
     std::string csv = csv_header();
-    const RunFigures figures =
-        simulate(simulation, [&](const TruthSample& sample) { append_row(csv, sample); });
+    const RunFigures figures = simulate(simulation, [&](const TruthSample& sample) { append_row(csv, sample); });
     if (options.csv == "-") {
         std::cout << csv;
     } else {
         write_whole_file(options.csv, csv);
     }
-    std::cerr << fmt::format("{} with law {}: residual energy {:.0f} J, peak power {:.1f} kW, peak R1 {:.2f} mm at "
-                             "{:.2f} s{}\n",
-                             simulation.crane_case.name, options.law, figures.residual_energy_J,
-                             1e-3 * figures.peak_power_W, 1e3 * figures.peak_R1_m, figures.peak_R1_time_s,
-                             options.csv == "-" ? "" : "; wrote " + options.csv);
+    std::cerr << fmt::format(
+        "{} with law {}: residual energy {:.0f} J, peak power {:.1f} kW, peak R1 {:.2f} mm at "
+        "{:.2f} s{}\n",
+        simulation.crane_case.name, options.law, figures.residual_energy_J, 1e-3 * figures.peak_power_W,
+        1e3 * figures.peak_R1_m, figures.peak_R1_time_s, options.csv == "-" ? "" : "; wrote " + options.csv);
     return exit_done;
 }
 

@@ -10,9 +10,10 @@
 
 int main(int argc, char** argv) {
     using namespace steadyboom;
-    CLI::App app("Steadyboom's bench: simulates a crawler crane and runs its controller against it.\n"
-                 "Exit codes: 0 done, 1 failed, 2 bad input.",
-                 "steadyboom");
+    CLI::App app(
+        "Steadyboom's bench: simulates a crawler crane and runs its controller against it.\n"
+        "Exit codes: 0 done, 1 failed, 2 bad input.",
+        "steadyboom");
     app.set_version_flag("--version", "steadyboom " STEADYBOOM_VERSION);
     app.require_subcommand(1);
     hil::Action selected;

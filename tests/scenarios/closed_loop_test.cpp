@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <map>
+#include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -54,10 +54,9 @@ TEST_P(EveryCase, RunsRankTheLawsAsTheSimulationDoes) {
 TEST_P(EveryCase, ThroughTheBusTheJointDeflectionLawDampsAsInTheSimulation) {
     const hil::RunOptions options = options_for(GetParam(), LawKind::joint_deflection);
     const double run_J = hil::run_in_lockstep(options).figures.residual_energy_J;
-    const double simulated_J =
-        hil::simulate({.crane_case = options.crane_case, .law = options.law, .duration_s = 10.0},
-                      [](const hil::TruthSample&) {})
-            .residual_energy_J;
+    const double simulated_J = hil::simulate({.crane_case = options.crane_case, .law = options.law, .duration_s = 10.0},
+                                             [](const hil::TruthSample&) {})
+                                   .residual_energy_J;
     EXPECT_NEAR(run_J, simulated_J, 0.05 * simulated_J);
 }
 

@@ -73,8 +73,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 TEST_F(CommandLine, SimulateWritesExactlyTheColumnsOfTheContract) {
-    const Outcome outcome = steadyboom(
-        "simulate case-a --law joint-deflection --duration-s 1 --output-period-s 0.1 --csv out.csv");
+    const Outcome outcome =
+        steadyboom("simulate case-a --law joint-deflection --duration-s 1 --output-period-s 0.1 --csv out.csv");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
     const auto lines = lines_of(content(folder_ / "out.csv"));
     ASSERT_EQ(lines.size(), 12U);

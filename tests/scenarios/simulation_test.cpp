@@ -22,11 +22,9 @@ struct Simulated {
 Simulated simulated(const std::string& name, LawKind law, std::optional<double> step_s = {},
                     double output_period_s = 0.005) {
     Simulated result;
-    result.figures = hil::simulate({.crane_case = hil::load_case(name),
-                                    .law = law,
-                                    .step_s = step_s,
-                                    .output_period_s = output_period_s},
-                                   [&](const TruthSample& sample) { result.samples.push_back(sample); });
+    result.figures = hil::simulate(
+        {.crane_case = hil::load_case(name), .law = law, .step_s = step_s, .output_period_s = output_period_s},
+        [&](const TruthSample& sample) { result.samples.push_back(sample); });
     return result;
 }
 
