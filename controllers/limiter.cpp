@@ -40,7 +40,9 @@ double limit_to_permission_m(double opening_m, const plant::Permission& permit, 
 }
 
 double limit_to_authority_m(double opening_m, double authority, std::uint32_t& reasons) noexcept {
-    return reported(opening_m, opening_m * std::clamp(authority, 0.0, 1.0), plant::limit_authority, reasons);
+    // Written so that an authority that is no number is none.
+    const double share = authority > 0.0 ? std::min(authority, 1.0) : 0.0;
+    return reported(opening_m, opening_m * share, plant::limit_authority, reasons);
 }
 
 double limit_to_absolute_m(double opening_m, double max_opening_m, std::uint32_t& reasons) noexcept {

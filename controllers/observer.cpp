@@ -50,12 +50,13 @@ Observer::Observer(const CraneDynamics& model, const CraneState& equilibrium, co
       step_s_(config.period_s / config.substeps),
       substeps_(config.substeps),
       variance_(config.sensor_sigma.cwiseAbs2()) {
-    if (!(config.period_s > 0.0) || config.substeps < 1) {
-        throw std::invalid_argument("observer: period_s and substeps must be positive");
+    const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
+    if (!positive(config.period_s) || config.substeps < 1) {
+        throw std::invalid_argument("observer: period_s and substeps must be positive and finite");
     }
     for (const Sensor channel : corrected_channels) {
-        if (!(variance_[channel] > 0.0)) {
-            throw std::invalid_argument("observer: every sensor's sigma must be positive");
+        if (!positive(config.sensor_sigma[channel])) {
+            throw std::invalid_argument("observer: every sensor's sigma must be positive and finite");
         }
     }
     estimate_.state = equilibrium;
