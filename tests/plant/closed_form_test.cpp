@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <Eigen/LU>
@@ -214,6 +215,20 @@ TEST(FreeCrane, EveryMassFallsWithGravityWhenNothingHolds) {
     for (const int i : {phi2_rad, R9_m, q1_m, q2_m, phi6_rad, phi9_rad}) {
         EXPECT_NEAR(rate[velocity_offset + i], 0.0, 1e-10) << i;
     }
+}
+
+TEST(LinearModes, AnOverdampedBounceIsTwoEntriesOfDampingOne) {
+    CraneParameters parameters = thesis_crane('A');
+    parameters.soil.density_kg_m3 *= 30.0;
+    const CraneDynamics crane(parameters);
+    int overdamped = 0;
+    const std::vector<LinearMode> modes = linear_modes(crane, find_equilibrium(crane).state);
+    for (const LinearMode& mode : modes) {
+        EXPECT_LE(mode.damping_ratio, 1.0);
+        overdamped += mode.damping_ratio == 1.0 ? 1 : 0;
+    }
+    EXPECT_EQ(overdamped, 2);
+    EXPECT_EQ(modes.size(), 8U);
 }
 
 TEST(LinearModes, NamesEveryCoordinate) {
