@@ -470,6 +470,22 @@ TEST(Interlock, RecoveryAloneNeverReEngages) {
     }
 }
 
+TEST(Interlock, DisengagingAfterAFaultAndItsResetHoldsAsBefore) {
+    Machine machine = machine_in(active);
+    (void)machine.tick(OperatorIntent::stop);
+    machine.run(stop_ticks + ready_ticks);
+    (void)machine.tick(OperatorIntent::reset);
+    machine.run(ready_ticks);
+    (void)machine.tick(OperatorIntent::arm);
+    machine.run(10);
+    (void)machine.tick(OperatorIntent::engage);
+    machine.run(engage_ticks + 1);
+    ASSERT_EQ(machine.state(), active);
+    (void)machine.tick(OperatorIntent::disengage);
+    machine.run(stop_ticks);
+    EXPECT_EQ(machine.state(), hold);
+}
+
 TEST(Interlock, ResetIsRefusedUntilTheCauseIsGoneForASecond) {
     Machine machine = machine_in(active);
     machine.measured.emergency_stop_healthy = false;

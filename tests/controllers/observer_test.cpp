@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include "hil/lockstep_run.hpp"
 #include "hil/state_names.hpp"
@@ -136,25 +137,48 @@ TEST_F(ObserverOnItsOwnModel, ConvergesToTheTruthFromADisturbedState) {
     }
 }
 
-// The steady gain is linear in the innovations, whatever the order of channels.
-TEST_F(ObserverOnItsOwnModel, CorrectionsOfAllChannelsAddUp) {
+// Probed alone, channel i shows column i of P H' and S_ii; from these and H, differentiated here, follows the gain
+// K = P H' (H P H' + R)^-1 of all channels at once, and their NIS e' S^-1 e.
+TEST_F(ObserverOnItsOwnModel, ChannelsOneAfterTheOtherAreAllAtOnce) {
+    using Rows = Eigen::Matrix<double, corrected.size(), state_count>;
+    using Square = Eigen::Matrix<double, corrected.size(), corrected.size()>;
+    using Channels = Eigen::Matrix<double, corrected.size(), 1>;
     const SensorVector rest = sensors(equilibrium);
-    const auto correction = [&](const SensorVector& innovation) -> CraneState {
-        Observer corrected_once = observer();
-        corrected_once.correct(measurement(rest + innovation));
-        return corrected_once.estimate().state - equilibrium;
-    };
-    CraneState sum = CraneState::Zero();
-    SensorVector all = SensorVector::Zero();
-    for (const Sensor channel : corrected) {
-        SensorVector one = SensorVector::Zero();
-        one[channel] = (channel % 2 == 0 ? 2.0 : -3.0) * config.sensor_sigma[channel];
-        sum += correction(one);
-        all += one;
+    Rows H;
+    for (int state = 0; state < state_count; ++state) {
+        constexpr double difference = 1e-7;
+        CraneState above = equilibrium;
+        CraneState below = equilibrium;
+        above[state] += difference;
+        below[state] -= difference;
+        const SensorVector slope = (sensors(above) - sensors(below)) / (2.0 * difference);
+        for (std::size_t i = 0; i < corrected.size(); ++i) {
+            H(static_cast<int>(i), state) = slope[corrected[i]];
+        }
     }
-    const CraneState together = correction(all);
-    EXPECT_GT(together.norm(), 1e-6);
-    EXPECT_LT((together - sum).cwiseQuotient(observer().prior_sigma()).cwiseAbs().maxCoeff(), 1e-9);
+    Rows HP;
+    Square R = Square::Zero();
+    Channels innovation;
+    CraneMeasurement together = measurement(rest);
+    for (std::size_t channel = 0; channel < corrected.size(); ++channel) {
+        const int i = static_cast<int>(channel);
+        const double sigma = config.sensor_sigma[corrected[channel]];
+        innovation[i] = (i % 2 == 0 ? 2.0 : -3.0) * sigma;
+        together.value[corrected[channel]] += innovation[i];
+        Observer probed = observer();
+        probed.correct(only(corrected[channel], together.value));
+        const CraneState K_i = (probed.estimate().state - equilibrium) / innovation[i];
+        R(i, i) = sigma * sigma;
+        HP.row(i) = K_i.transpose() * (R(i, i) / (1.0 - H.row(i).dot(K_i)));
+    }
+    const Square S = HP * H.transpose() + R;
+    const CraneState expected = HP.transpose() * S.ldlt().solve(innovation);
+    Observer all = observer();
+    all.correct(together);
+    const CraneState error = all.estimate().state - equilibrium - expected;
+    EXPECT_LT(error.cwiseQuotient(all.prior_sigma()).cwiseAbs().maxCoeff(), 1e-4);
+    EXPECT_GT(expected.cwiseQuotient(all.prior_sigma()).cwiseAbs().maxCoeff(), 0.1);
+    EXPECT_NEAR(all.estimate().nis, innovation.dot(S.ldlt().solve(innovation)), 1e-4 * all.estimate().nis);
 }
 
 TEST_F(ObserverOnItsOwnModel, OneChannelIsFollowedPartOfTheWayAndNeverBeyond) {
