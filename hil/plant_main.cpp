@@ -1,13 +1,10 @@
 // steadyboom-plant: the virtual crane as a real-time process of its own on a SocketCAN interface.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <csignal>
-#include <exception>
 
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
-#include <CLI/CLI.hpp>
 
 #include "drivers/socketcan_bus.hpp"
 #include "hil/plant_config.hpp"
@@ -15,28 +12,21 @@
 #include "hil/virtual_crane.hpp"
 #include "runtime/periodic_loop.hpp"
 #include "runtime/realtime_thread.hpp"
+#include "runtime/service_program.hpp"
 #include "runtime/tick_ring.hpp"
-#include "runtime/toml_reader.hpp"
-
-namespace {
 
 using namespace steadyboom;
 
+namespace {
+
 constexpr int exit_done = 0;
 constexpr int exit_failed = 1;
-constexpr int exit_bad_input = 2;
 
 /// The crane moves in steps of step_ns and looks at the bus every wake_ns; a SYNC waits no longer than that.
 constexpr std::int64_t step_ns = 500'000;
 constexpr std::int64_t wake_ns = 1'000'000;
 /// Time that may be caught up with at once after a late wake-up. Beyond it the crane has lost real time.
 constexpr std::uint64_t most_wakes_behind = 200;
-
-std::atomic<bool> stop_requested{false};
-
-void request_stop(int) {
-    stop_requested.store(true, std::memory_order_relaxed);
-}
 
 hil::PlantRecord record_of(const hil::TruthSample& truth, std::uint64_t step, std::int64_t time_ns,
                            std::uint64_t valve_timeouts) {
@@ -86,7 +76,7 @@ int stand_in_for_the_crane(const hil::PlantConfig& config) {
     std::array<drivers::CanFrame, 512> frames;
     std::int64_t step = 0;
     ring.push(record_of(crane.truth(t_s(0)), 0, epoch_ns, 0));
-    while (step < last_step && !stop_requested.load(std::memory_order_relaxed)) {
+    while (step < last_step && !runtime::stop_requested().load(std::memory_order_relaxed)) {
         const runtime::TickStart start = loop.wait();
         if (start.skipped_ticks > most_wakes_behind) {
             spdlog::error("lost real time: the machine gave this process no time for {} ms",
@@ -118,32 +108,13 @@ int stand_in_for_the_crane(const hil::PlantConfig& config) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app(
-        "The virtual crane on a CAN interface: devices, sensors, valve and the true crane behind them.\n"
-        "Exit codes: 0 done or stopped by SIGTERM or SIGINT, 1 failed, 2 bad input.",
-        "steadyboom-plant");
-    app.set_version_flag("--version", "steadyboom-plant " STEADYBOOM_VERSION);
-    std::string path;
-    app.add_option("--config", path, "Configuration file; its form: hil/plant.toml")->required();
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? exit_done : exit_bad_input;
-    }
-
-    spdlog::set_default_logger(spdlog::stderr_logger_mt("steadyboom-plant"));
-    spdlog::set_pattern("%n: %l: %v");
-    struct sigaction action {};
-    action.sa_handler = request_stop;
-    sigaction(SIGTERM, &action, nullptr);
-    sigaction(SIGINT, &action, nullptr);
-    try {
-        return stand_in_for_the_crane(hil::load_plant_config(path));
-    } catch (const runtime::ConfigError& error) {
-        spdlog::error("{}", error.what());
-        return exit_bad_input;
-    } catch (const std::exception& error) {
-        spdlog::error("{}", error.what());
-        return exit_failed;
-    }
+    return runtime::run_service(
+        {.name = "steadyboom-plant",
+         .purpose = "The virtual crane on a CAN interface: devices, sensors, valve and the true crane behind them.",
+         .config_form = "hil/plant.toml",
+         .work =
+             [](const std::filesystem::path& config) {
+                 return stand_in_for_the_crane(hil::load_plant_config(config));
+             }},
+        argc, argv);
 }

@@ -2,16 +2,11 @@
 // socket, shows every tick in shared memory.
 #include <atomic>
 #include <chrono>
-#include <csignal>
-#include <cstdlib>
-#include <exception>
 #include <memory>
 #include <thread>
 
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
-#include <CLI/CLI.hpp>
 
 #include "drivers/socketcan_bus.hpp"
 #include "runtime/control_tick.hpp"
@@ -19,23 +14,16 @@
 #include "runtime/operator_socket.hpp"
 #include "runtime/periodic_loop.hpp"
 #include "runtime/realtime_thread.hpp"
-#include "runtime/toml_reader.hpp"
+#include "runtime/service_program.hpp"
+
+using namespace steadyboom;
 
 namespace {
 
-using namespace steadyboom;
 using controllers::InterlockState;
 
 constexpr int exit_done = 0;
 constexpr int exit_failed = 1;
-constexpr int exit_bad_input = 2;
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
-
-void request_stop(int) {
-    stop_requested.store(true, std::memory_order_relaxed);
-}
 
 runtime::ControlTickConfig tick_config(const runtime::ControllerConfig& config) {
     return {.crane = config.crane.crane,
@@ -142,7 +130,7 @@ int control(const runtime::ControllerConfig& config) {
     std::atomic<bool> over{false};
     loop.run(
         [&](const runtime::TickStart& start) noexcept {
-            if (stop_requested.load(std::memory_order_relaxed)) {
+            if (runtime::stop_requested().load(std::memory_order_relaxed)) {
                 tick->request_stop();
                 if (--farewell_ticks <= 0) {
                     over.store(true, std::memory_order_relaxed);
@@ -169,32 +157,10 @@ int control(const runtime::ControllerConfig& config) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app(
-        "Steadyboom's real-time controller: keeps a crane's boom steady through the valve in its pendent.\n"
-        "Exit codes: 0 stopped by SIGTERM or SIGINT, 1 failed, 2 bad input.",
-        "steadyboom-controller");
-    app.set_version_flag("--version", "steadyboom-controller " STEADYBOOM_VERSION);
-    std::string path;
-    app.add_option("--config", path, "Configuration file; its form: systemd/controller.toml")->required();
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? exit_done : exit_bad_input;
-    }
-
-    spdlog::set_default_logger(spdlog::stderr_logger_mt("steadyboom-controller"));
-    spdlog::set_pattern("%n: %l: %v");
-    struct sigaction action {};
-    action.sa_handler = request_stop;
-    sigaction(SIGTERM, &action, nullptr);
-    sigaction(SIGINT, &action, nullptr);
-    try {
-        return control(runtime::load_controller_config(path));
-    } catch (const runtime::ConfigError& error) {
-        spdlog::error("{}", error.what());
-        return exit_bad_input;
-    } catch (const std::exception& error) {
-        spdlog::error("{}", error.what());
-        return exit_failed;
-    }
+    return runtime::run_service(
+        {.name = "steadyboom-controller",
+         .purpose = "Steadyboom's real-time controller: keeps a crane's boom steady through the valve in its pendent.",
+         .config_form = "systemd/controller.toml",
+         .work = [](const std::filesystem::path& config) { return control(runtime::load_controller_config(config)); }},
+        argc, argv);
 }
