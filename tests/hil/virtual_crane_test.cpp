@@ -195,24 +195,37 @@ TEST(VirtualCrane, PistonAndSpoolKeepToTheirTravel) {
     }
 }
 
+/// Unit step response of a spool of 100 Hz.
+double response(double zeta, double t_s) {
+    const double omega = 2.0 * std::numbers::pi * 100.0;
+    const double damped = omega * std::sqrt(1.0 - zeta * zeta);
+    const double decay = std::exp(-zeta * omega * t_s);
+    return t_s <= 0.0 ? 0.0 : 1.0 - decay * (std::cos(damped * t_s) + zeta * omega / damped * std::sin(damped * t_s));
+}
+
 TEST(VirtualCrane, SpoolFollowsASetPointAfterItsDeadTimeAsASecondOrderSystem) {
     CraneOnTheBus bench(with_spool(), 1, 50);  // 0.1 ms steps
     bench.start();
-    const auto response = [](double t_s) {
-        const double omega = 2.0 * std::numbers::pi * 100.0;
-        const double zeta = 0.8;
-        const double damped = omega * std::sqrt(1.0 - zeta * zeta);
-        return t_s <= 0.0 ? 0.0
-                          : 1.0 - std::exp(-zeta * omega * t_s) *
-                                      (std::cos(damped * t_s) + zeta * omega / damped * std::sin(damped * t_s));
-    };
     // The bus carries the set-point in 1/16384 of the travel.
     const double set_point_m = std::round(2e-3 / 7.6e-3 * 16384.0) / 16384.0 * 7.6e-3;
     for (int tick = 1; tick <= 8; ++tick) {
         (void)bench.tick(2e-3, CraneOnTheBus::engaged);
-        EXPECT_NEAR(bench.crane.truth(0.0).spool_m, set_point_m * response(0.005 * tick - 0.001), 1e-5 * set_point_m)
+        EXPECT_NEAR(bench.crane.truth(0.0).spool_m, set_point_m * response(0.8, 0.005 * tick - 0.001),
+                    1e-5 * set_point_m)
             << tick;
     }
+}
+
+// Lightly damped, the spool reaches its stop 4 ms after the order, at speed; from 6 ms on it returns as from rest.
+TEST(VirtualCrane, SpoolsStopTakesItsSpeedAway) {
+    CraneParameters parameters = with_spool();
+    parameters.actuator.spool_damping_ratio = 0.2;
+    CraneOnTheBus bench(parameters, 1, 50);
+    bench.start();
+    (void)bench.tick(7.6e-3, CraneOnTheBus::engaged);
+    EXPECT_EQ(bench.crane.truth(0.0).spool_m, 7.6e-3);
+    (void)bench.tick(0.0, CraneOnTheBus::engaged);
+    EXPECT_NEAR(bench.crane.truth(0.0).spool_m, 7.6e-3 * (1.0 - response(0.2, 0.004)), 1e-5);
 }
 
 TEST(VirtualCrane, ValveCentresItselfAndShutsTheCutoffWhenTheControllerFallsSilent) {
