@@ -68,9 +68,9 @@ Observer::Observer(const CraneDynamics& model, const CraneState& equilibrium, co
         CraneState below = equilibrium;
         above[i] += difference;
         below[i] -= difference;
-        F.col(i) = (model_step(model_, above, 0.0, step_s_, substeps_) -
-                    model_step(model_, below, 0.0, step_s_, substeps_)) /
-                   (2.0 * difference);
+        F.col(i) =
+            (model_step(model_, above, 0.0, step_s_, substeps_) - model_step(model_, below, 0.0, step_s_, substeps_)) /
+            (2.0 * difference);
         sensor_rows_.col(i) =
             (ideal_sensors(model_, above, 0.0) - ideal_sensors(model_, below, 0.0)) / (2.0 * difference);
     }
@@ -133,6 +133,8 @@ CraneState Observer::ahead(double opening_m, double lead_s) const noexcept {
     return model_step(model_, estimate_.state, opening_m, lead_s / substeps_, substeps_);
 }
 
-CraneState Observer::prior_sigma() const noexcept { return prior_.diagonal().cwiseSqrt(); }
+CraneState Observer::prior_sigma() const noexcept {
+    return prior_.diagonal().cwiseSqrt();
+}
 
 }  // namespace steadyboom::controllers
