@@ -19,5 +19,6 @@ using Action = std::function<int()>;
 void add_simulate_command(CLI::App& app, Action& selected);
 void add_equilibrium_command(CLI::App& app, Action& selected);
 void add_run_command(CLI::App& app, Action& selected);
+void add_reproduce_command(CLI::App& app, Action& selected);
 
 }  // namespace steadyboom::hil

@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
     hil::add_simulate_command(app, selected);
     hil::add_equilibrium_command(app, selected);
     hil::add_run_command(app, selected);
+    hil::add_reproduce_command(app, selected);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -1,0 +1,149 @@
+#include "hil/reproduction/claim.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace steadyboom::hil::reproduction {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+std::string with_unit(double value, const std::string& unit) {
+    const std::string text = std::abs(value) >= 1000.0 && std::abs(value) < 1e7 ? fmt::format("{:.0f}", value)
+                                                                                : fmt::format("{:.3g}", value);
+    return unit.empty() ? text : text + " " + unit;
+}
+
+std::string words(const Range& range, const std::string& unit) {
+    if (range.low == -infinite && range.high == infinite) {
+        return "any value";
+    }
+    if (range.low == -infinite) {
+        return "at most " + with_unit(range.high, unit);
+    }
+    if (range.high == infinite) {
+        return "at least " + with_unit(range.low, unit);
+    }
+    return range.low == range.high ? "exactly " + with_unit(range.low, unit)
+                                   : fmt::format("{} to {}", with_unit(range.low, ""), with_unit(range.high, unit));
+}
+
+Range around(double value, double share) {
+    return {std::min(value * (1.0 - share), value * (1.0 + share)),
+            std::max(value * (1.0 - share), value * (1.0 + share))};
+}
+
+Row answer(const Claim& claim, const ThesisRuns& runs) {
+    Row row{.id = claim.id,
+            .section = claim.section,
+            .figures = claim.figures,
+            .claim = claim.claim,
+            .thesis = claim.thesis,
+            .measures = {},
+            .verdict = Verdict::not_examined,
+            .here = "not examined",
+            .reason = "no run of this model can tell",
+            .would_hold_if = claim.would_hold_if};
+    if (!claim.measures) {
+        return row;
+    }
+    row.measures = claim.measures(runs);
+    const Measure& worst = *std::ranges::max_element(row.measures, {}, &Measure::verdict);
+    row.verdict = worst.verdict();
+    row.here.clear();
+    for (const Measure& measure : row.measures) {
+        row.here +=
+            fmt::format("{}{} {}", row.here.empty() ? "" : "; ", measure.name, with_unit(measure.value, measure.unit));
+    }
+    row.reason = fmt::format("{} is {}; holds for {}", worst.name, with_unit(worst.value, worst.unit),
+                             words(worst.holds, worst.unit));
+    if (worst.in_kind.low != worst.holds.low || worst.in_kind.high != worst.holds.high) {
+        row.reason += fmt::format(", in kind for {}", words(worst.in_kind, worst.unit));
+    }
+    if (row.verdict == Verdict::holds) {
+        row.would_hold_if.clear();
+    } else if (row.would_hold_if.empty()) {
+        row.would_hold_if = fmt::format("{} would have to be {}", worst.name, words(worst.holds, worst.unit));
+    }
+    return row;
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) noexcept {
+    switch (verdict) {
+        case Verdict::holds:
+            return "holds";
+        case Verdict::holds_in_kind:
+            return "holds in kind";
+        case Verdict::does_not_hold:
+            return "does not hold";
+        case Verdict::not_examined:
+            break;
+    }
+    return "not examined";
+}
+
+Verdict Measure::verdict() const noexcept {
+    if (!std::isfinite(value)) {
+        return Verdict::does_not_hold;
+    }
+    if (holds.contains(value)) {
+        return Verdict::holds;
+    }
+    return in_kind.contains(value) ? Verdict::holds_in_kind : Verdict::does_not_hold;
+}
+
+Measure number(std::string name, std::string unit, double thesis, double value) {
+    const Range kind{std::min(0.5 * thesis, 2.0 * thesis), std::max(0.5 * thesis, 2.0 * thesis)};
+    return {std::move(name), std::move(unit), value, around(thesis, 0.1), kind};
+}
+
+Measure frequency(std::string name, double thesis_Hz, double value_Hz) {
+    return {std::move(name), "Hz", value_Hz, around(thesis_Hz, 0.1), around(thesis_Hz, 0.25)};
+}
+
+Measure change(std::string name, double thesis_percent, double value_percent) {
+    const double margin = std::max(0.1 * std::abs(thesis_percent), 2.0);
+    const Range kind = thesis_percent > 0.0 ? Range{0.0, infinite} : Range{-infinite, 0.0};
+    return {std::move(name), "%", value_percent, Range{thesis_percent - margin, thesis_percent + margin}, kind};
+}
+
+Measure at_most(std::string name, std::string unit, double value, double limit, double in_kind) {
+    return {std::move(name), std::move(unit), value, Range{-infinite, limit}, Range{-infinite, in_kind}};
+}
+
+Measure at_least(std::string name, std::string unit, double value, double limit, double in_kind) {
+    return {std::move(name), std::move(unit), value, Range{limit, infinite}, Range{in_kind, infinite}};
+}
+
+Measure smaller(std::string name, double ratio) {
+    return at_most(std::move(name), "", ratio, 1.0, 1.0);
+}
+
+Measure larger(std::string name, double ratio) {
+    return at_least(std::move(name), "", ratio, 1.0, 1.0);
+}
+
+Measure same(std::string name, double ratio) {
+    return {std::move(name), "", ratio, Range{1.0 / 1.1, 1.1}, Range{0.8, 1.25}};
+}
+
+std::vector<Row> judge(const ThesisRuns& runs) {
+    std::vector<Row> rows;
+    for (const auto& claims : {chapter_5_claims(), chapter_7_claims(), chapter_8_claims()}) {
+        for (const Claim& claim : claims) {
+            rows.push_back(answer(claim, runs));
+        }
+    }
+    return rows;
+}
+
+std::size_t count(const std::vector<Row>& rows, Verdict verdict) noexcept {
+    return static_cast<std::size_t>(std::ranges::count(rows, verdict, &Row::verdict));
+}
+
+}  // namespace steadyboom::hil::reproduction
