@@ -218,7 +218,9 @@ std::vector<Claim> chapter_5_claims() {
                      at_least("phi2, the same", "", peak(r.b, phi2_rad, 1.0, 3.0) / peak(r.b, phi2_rad, 0.0, 1.0), 1.0,
                               0.8)};
          }},
-        {"5-B-06", "5, case B", "41", "By then the load's oscillation has damped out a good deal", "qualitative", "",
+        {"5-B-06", "5, case B", "41", "By then the load's oscillation has damped out a good deal", "qualitative",
+         "The boom, the load line and the soil would have to take more out of the load's bounce than Table 1 and the "
+         "0.7 % of 3.1.1 give them",
          [](const ThesisRuns& r) -> Measures {
              return {at_most("R9, RMS of 1.75-2.75 s over the first second", "",
                              rms(r.b, R9_m, 1.75, 2.75) / rms(r.b, R9_m, 0.0, 1.0), 0.5, 0.8)};
@@ -270,7 +272,9 @@ std::vector<Claim> chapter_5_claims() {
              return {at_least("phi9, largest below 2 Hz over largest above", "",
                               band_ratio(r.b, phi9_rad, slow_Hz, fast_Hz), 1.0, 0.5)};
          }},
-        {"5-B-16", "5, case B", "34, 46", "In case A it has a third of that magnitude", "1/3", "",
+        {"5-B-16", "5, case B", "34, 46", "In case A it has a third of that magnitude", "1/3",
+         "Case A's pendulation would have to be excited a third as much; half the catching speed alone makes it more "
+         "than that",
          [](const ThesisRuns& r) -> Measures {
              return {number("phi9 below 2 Hz, A over B", "", 1.0 / 3.0,
                             largest_amplitude(r.a.spectrum(phi9_rad), slow_Hz.low, slow_Hz.high) /
@@ -288,7 +292,9 @@ std::vector<Claim> chapter_5_claims() {
                           quiet_spell(r.b, q1_rate_m_s, 3.0, 9.0, 0.5, 1.5).regain, 1.5, 1.15),
                  at_least("q2', the same", "", quiet_spell(r.b, q2_rate_m_s, 3.0, 9.0, 0.5, 1.5).regain, 1.5, 1.15)};
          }},
-        {"5-B-19", "5, case B", "42, 43", "The energy that beats in the boom is about 5 % of the system's", "5 %", "",
+        {"5-B-19", "5, case B", "42, 43", "The energy that beats in the boom is about 5 % of the system's", "5 %",
+         "The boom would have to hold more of the energy: it is stiff against the ropes it hangs in, which hold most "
+         "of it",
          [](const ThesisRuns& r) -> Measures {
              const double quiet_s = quiet_spell(r.b, q1_rate_m_s, 3.0, 9.0, 0.5, 1.5).time_s;
              const double boom_J = highest(r.b, boom_energy_J, quiet_s - 1.5, quiet_s + 1.5) -
@@ -392,7 +398,8 @@ std::vector<Claim> chapter_5_claims() {
              return {same("phi9 over phi6, dominant", dominant_Hz(r.c, phi9_rad) / dominant_Hz(r.c, phi6_rad))};
          }},
         {"5-C-14", "5, case C", "52", "The largest stretch of the load line is not the first shock's but a later one's",
-         "qualitative", "",
+         "qualitative",
+         "The crane's rocking would have to stretch the load line later by more than the catch does at first",
          [](const ThesisRuns& r) -> Measures {
              return {larger("R9, highest after 0.5 s over highest before",
                             highest(r.c, R9_m, 0.5) / highest(r.c, R9_m, 0.0, 0.5))};
@@ -402,12 +409,14 @@ std::vector<Claim> chapter_5_claims() {
              return {at_most("R9, fluctuation of the last second over the first", "",
                              fluctuation(r.c, R9_m, 9.0) / fluctuation(r.c, R9_m, 0.0, 1.0), 0.3, 0.6)};
          }},
-        {"5-C-16", "5, case C", "53", "The lower boom joint shows no damping within 10 s", "qualitative", "",
+        {"5-C-16", "5, case C", "53", "The lower boom joint shows no damping within 10 s", "qualitative",
+         "The boom's bending would have to be free of the soil and the ropes, which damp it here",
          [](const ThesisRuns& r) -> Measures {
              return {at_least("q1, fluctuation of the last second over 1-2 s", "",
                               fluctuation(r.c, q1_m, 9.0) / fluctuation(r.c, q1_m, 1.0, 2.0), 0.8, 0.5)};
          }},
-        {"5-C-17", "5, case C", "54", "The upper boom joint shows no damping within 10 s", "qualitative", "",
+        {"5-C-17", "5, case C", "54", "The upper boom joint shows no damping within 10 s", "qualitative",
+         "The boom's bending would have to be free of the soil and the ropes, which damp it here",
          [](const ThesisRuns& r) -> Measures {
              return {at_least("q2, fluctuation of the last second over 1-2 s", "",
                               fluctuation(r.c, q2_m, 9.0) / fluctuation(r.c, q2_m, 1.0, 2.0), 0.8, 0.5)};
@@ -417,13 +426,16 @@ std::vector<Claim> chapter_5_claims() {
          [](const ThesisRuns& r) -> Measures {
              return {at_most("likeness to case A", "", spectral_likeness(r.c, q1_m, r.a, q1_m), 0.5, 0.8)};
          }},
-        {"5-C-19", "5, case C", "59", "The boom's chord oscillates at 10 s as much as at 4 s", "similar", "",
+        {"5-C-19", "5, case C", "59", "The boom's chord oscillates at 10 s as much as at 4 s", "similar",
+         "As for the joints: the boom's bending would have to be undamped",
          [](const ThesisRuns& r) -> Measures {
              return {same("chord, fluctuation of 9-10 s over 4-5 s",
                           fluctuation(r.c, chord_m, 9.0) / fluctuation(r.c, chord_m, 4.0, 5.0))};
          }},
         {"5-C-20", "5, case C", "50, 59", "The boom rotation's slow frequency marks the pendent's tension too",
-         "the same", "",
+         "the same",
+         "The chord's rotation would have to be as slow as the pendent's tension; here the faster bending of the boom "
+         "outweighs it",
          [](const ThesisRuns& r) -> Measures {
              return {same("pendent tension over phi6, dominant",
                           dominant_Hz(r.c, pendent_tension_N) / dominant_Hz(r.c, phi6_rad))};

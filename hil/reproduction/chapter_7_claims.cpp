@@ -88,11 +88,12 @@ std::vector<Claim> case_a_law_1() {
              return {larger("largest phi2, with over without", peak_ratio(r.a1, r.a, phi2_rad))};
          }},
         {"7-A1-03", "7, case A, law 1", "63", "The tracks' vertical motion is far smaller from 3 s on", "dramatically",
-         "",
+         "The law would have to damp the ground's motion; with the printed gains it goes on driving it to the end",
          [](const ThesisRuns& r) -> Measures {
              return {attenuated("RMS of R1 from 3 s", rest_ratio(r.a1, r.a, R1_m, 3.0))};
          }},
-        {"7-A1-04", "7, case A, law 1", "64", "The track rotation is far smaller from 3 s on", "dramatically", "",
+        {"7-A1-04", "7, case A, law 1", "64", "The track rotation is far smaller from 3 s on", "dramatically",
+         "The law would have to damp the ground's motion; with the printed gains it goes on driving it to the end",
          [](const ThesisRuns& r) -> Measures {
              return {attenuated("RMS of phi2 from 3 s", rest_ratio(r.a1, r.a, phi2_rad, 3.0))};
          }},
@@ -100,8 +101,7 @@ std::vector<Claim> case_a_law_1() {
          "slightly smaller", "",
          [](const ThesisRuns& r) -> Measures {
              const double ratio = peak_ratio(r.a1, r.a, phi6_rad);
-             return {smaller("largest phi6, with over without", ratio),
-                     {"the same", "", ratio, Range{0.75, 1.0}, Range{0.0, 1.0}}};
+             return {{"largest phi6, with over without", "", ratio, Range{0.75, 1.0}, Range{0.0, 1.0}}};
          }},
         {"7-A1-06", "7, case A, law 1", "65", "The chord's rotation goes on to the end without getting smaller",
          "no further reduction",
@@ -149,7 +149,9 @@ std::vector<Claim> case_a_law_1() {
                              0.5, 0.8)};
          }},
         {"7-A1-14", "7, case A, law 1", "68", "The energy goes into the actuator rather than into the soil",
-         "qualitative", "",
+         "qualitative",
+         "The piston would have to yield to the tension's swings; with these gains it pushes against the motion and "
+         "feeds it",
          [](const ThesisRuns& r) -> Measures {
              return {at_most("piston's work on the crane, of the energy at the start", "%", piston_share_percent(r.a1),
                              -50.0, 0.0)};
@@ -203,7 +205,8 @@ std::vector<Claim> case_a_law_2() {
                               0.5, 0.2)};
          }},
         {"7-A2-10", "7, case A, law 2", "75, 76", "Load stretch and lower joint have nearly the same record",
-         "almost identical", "",
+         "almost identical",
+         "One mode would have to make up both: the pendent's motion reaches the joint and not the load line",
          [](const ThesisRuns& r) -> Measures {
              return {
                  at_least("|correlation| of R9 and q1", "", std::abs(correlation(r.a2, R9_m, r.a2, q1_m)), 0.9, 0.7)};
@@ -266,7 +269,9 @@ std::vector<Claim> case_a_law_2() {
              return {larger("q1 with law 2 over phi6 with law 1, dominant",
                             dominant_Hz(r.a2, q1_m) / dominant_Hz(r.a1, phi6_rad))};
          }},
-        {"7-A2-22", "7, case A, law 2", "77", "Many frequencies make up R1", "many", "",
+        {"7-A2-22", "7, case A, law 2", "77", "Many frequencies make up R1", "many",
+         "The catch would have to excite the faster modes as much as the slow ones: they are there, at less than a "
+         "fifth of the largest",
          [](const ThesisRuns& r) -> Measures {
              return {at_least("visible peaks of R1", "", visible_count(r.a2, R1_m), 4.0, 3.0)};
          }},
@@ -284,11 +289,15 @@ std::vector<Claim> case_a_law_2() {
 
 std::vector<Claim> case_a_law_3() {
     return {
-        {"7-A3-01", "7, case A, law 3", "63, 81", "R1 looks much as with law 1", "very similar", "",
+        {"7-A3-01", "7, case A, law 3", "63, 81", "R1 looks much as with law 1", "very similar",
+         "Boom angle and swing rate would have to act alike; here the valve at its limits makes law 3 a motion of its "
+         "own",
          [](const ThesisRuns& r) -> Measures {
              return {at_least("likeness of the spectra", "", spectral_likeness(r.a3, R1_m, r.a1, R1_m), 0.7, 0.4)};
          }},
-        {"7-A3-02", "7, case A, law 3", "64, 82", "phi2 looks much as with law 1", "very similar", "",
+        {"7-A3-02", "7, case A, law 3", "64, 82", "phi2 looks much as with law 1", "very similar",
+         "Boom angle and swing rate would have to act alike; here the valve at its limits makes law 3 a motion of its "
+         "own",
          [](const ThesisRuns& r) -> Measures {
              return {
                  at_least("likeness of the spectra", "", spectral_likeness(r.a3, phi2_rad, r.a1, phi2_rad), 0.7, 0.4)};
@@ -302,7 +311,7 @@ std::vector<Claim> case_a_law_3() {
              return {larger("largest phi2, law 3 over law 1", peak_ratio(r.a3, r.a1, phi2_rad))};
          }},
         {"7-A3-05", "7, case A, law 3", "81, 82", "Over 10 s the ground's motion is smaller than with law 1", "smaller",
-         "Swing-rate feedback would have to damp the ground's modes better than boom-angle feedback does",
+         "",
          [](const ThesisRuns& r) -> Measures {
              return {smaller("RMS of R1 from 5 s, law 3 over law 1", rest_ratio(r.a3, r.a1, R1_m)),
                      smaller("RMS of phi2 from 5 s, law 3 over law 1", rest_ratio(r.a3, r.a1, phi2_rad))};
@@ -312,7 +321,8 @@ std::vector<Claim> case_a_law_3() {
          [](const ThesisRuns& r) -> Measures {
              return {smaller("largest phi9, with over without", peak_ratio(r.a3, r.a, phi9_rad))};
          }},
-        {"7-A3-07", "7, case A, law 3", "83", "The pendulation is far smaller from 3 s on", "dramatically", "",
+        {"7-A3-07", "7, case A, law 3", "83", "The pendulation is far smaller from 3 s on", "dramatically",
+         "The law would have to damp the pendulum; moving the boom's tip after the load excites its slow swing",
          [](const ThesisRuns& r) -> Measures {
              return {attenuated("RMS of phi9 from 3 s", rest_ratio(r.a3, r.a, phi9_rad, 3.0))};
          }},
@@ -374,7 +384,9 @@ std::vector<Claim> case_a_law_3() {
 
 std::vector<Claim> case_b_law_2() {
     return {
-        {"7-B2-01", "7, case B, law 2", "37, 88", "R1 looks as without control", "similar", "",
+        {"7-B2-01", "7, case B, law 2", "37, 88", "R1 looks as without control", "similar",
+         "The law would have to leave the ground's frequencies as they are; damping the load's bounce alters which of "
+         "them dominates",
          [](const ThesisRuns& r) -> Measures {
              return {at_least("likeness of the spectra", "", spectral_likeness(r.b2, R1_m, r.b, R1_m), 0.8, 0.5)};
          }},
@@ -388,7 +400,7 @@ std::vector<Claim> case_b_law_2() {
         {"7-B2-03", "7, case B, law 2", "88", "It damps out 2 s sooner", "2 s", "",
          [](const ThesisRuns& r) -> Measures {
              const double earlier_s = sooner_s(r.b2, r.b, R1_m);
-             return {{"R1 below a fifth for good, sooner by", "s", earlier_s, Range{1.8, 1e9}, Range{0.0, 1e9}}};
+             return {{"R1 below a fifth for good, sooner by", "s", earlier_s, Range{1.8, 2.2}, Range{0.0, 1e9}}};
          }},
         {"7-B2-04", "7, case B, law 2", "38, 89", "The largest track rotation is 7 % smaller", "-7 %", peak_if,
          [](const ThesisRuns& r) -> Measures {
@@ -397,7 +409,7 @@ std::vector<Claim> case_b_law_2() {
         {"7-B2-05", "7, case B, law 2", "89", "It damps out 2 s sooner", "2 s", "",
          [](const ThesisRuns& r) -> Measures {
              const double earlier_s = sooner_s(r.b2, r.b, phi2_rad);
-             return {{"phi2 below a fifth for good, sooner by", "s", earlier_s, Range{1.8, 1e9}, Range{0.0, 1e9}}};
+             return {{"phi2 below a fifth for good, sooner by", "s", earlier_s, Range{1.8, 2.2}, Range{0.0, 1e9}}};
          }},
         {"7-B2-06", "7, case B, law 2", "42, 90", "The lower joint's largest deflection is the same", "the same",
          peak_if,
@@ -448,7 +460,8 @@ std::vector<Claim> case_b_law_2() {
                  larger("share of the energy left, B over A", residual_share(r.b2, r.b) / residual_share(r.a2, r.a))};
          }},
         {"7-B2-16", "7, case B, law 2", "44, 93", "The spectrum of R1 is as without control", "practically unchanged",
-         "",
+         "The law would have to leave the ground's frequencies as they are; damping the load's bounce alters which of "
+         "them dominates",
          [](const ThesisRuns& r) -> Measures {
              return {at_least("likeness of the spectra", "", spectral_likeness(r.b2, R1_m, r.b, R1_m), 0.9, 0.6)};
          }},
@@ -456,7 +469,8 @@ std::vector<Claim> case_b_law_2() {
          [](const ThesisRuns& r) -> Measures {
              return {at_most("likeness to case A's", "", spectral_likeness(r.b2, R1_m, r.a2, R1_m), 0.5, 0.8)};
          }},
-        {"7-B2-18", "7, case B, law 2", "77, 93", "Fewer frequencies make up R1 than in case A", "few against many", "",
+        {"7-B2-18", "7, case B, law 2", "77, 93", "Fewer frequencies make up R1 than in case A", "few against many",
+         "Case A would have to show more: there the load bounces on taut ropes and one or two frequencies stand out",
          [](const ThesisRuns& r) -> Measures {
              return {at_most("visible peaks of R1, B over A", "", visible_count(r.b2, R1_m) / visible_count(r.a2, R1_m),
                              0.75, 0.99)};

@@ -82,8 +82,4 @@ std::string json_of(const std::vector<Row>& rows) {
     return document.dump(2) + "\n";
 }
 
-std::string page_of(const std::vector<Row>&, const ThesisRuns&) {
-    return {};
-}
-
 }  // namespace steadyboom::hil::reproduction

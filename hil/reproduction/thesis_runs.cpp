@@ -52,6 +52,7 @@ ThesisRun::ThesisRun(std::string name, const SimulationOptions& options)
         crane.mass_matrix(plant::coordinates_of(rest.state)).block<2, 2>(plant::q1_m, plant::q1_m);
 
     double last_t_s = 0.0;
+    plant::CraneState last_state = rest.state;
     figures_ = simulate(options_, [&](const TruthSample& sample) {
         const plant::CraneState deviation = sample.state - rest.state;
         const auto add = [&](Signal signal, double value) {
@@ -75,7 +76,10 @@ ThesisRun::ThesisRun(std::string name, const SimulationOptions& options)
         soil_work_J_ += power.soil_W * (sample.t_s - last_t_s);
         piston_work_J_ += power.piston_W * (sample.t_s - last_t_s);
         last_t_s = sample.t_s;
+        last_state = sample.state;
     });
+    soil_work_J_ += plant::full_contact_energy_J(crane, last_state) - plant::full_contact_energy_J(crane, rest.state);
+    piston_work_J_ -= rest.pendent_tension_N * last_state[plant::piston_index];
     for (std::size_t i = 0; i < signal_count; ++i) {
         spectra_[i] = amplitude_spectrum(signals_[i], options_.output_period_s);
     }

@@ -57,8 +57,12 @@ class ThesisRun {
     [[nodiscard]] const Spectrum& spectrum(Signal signal) const noexcept {
         return spectra_[static_cast<std::size_t>(signal)];
     }
-    [[nodiscard]] double soil_work_J() const noexcept { return soil_work_J_; }      ///< taken by soil damping, <= 0
-    [[nodiscard]] double piston_work_J() const noexcept { return piston_work_J_; }  ///< given to the crane
+    /// Energy of the motion that the soil's damping took, J, at most 0: the soil's work less what its spring holds at
+    /// the end (full contact at both ends).
+    [[nodiscard]] double soil_work_J() const noexcept { return soil_work_J_; }
+    /// Energy of the motion that the piston gave, J, negative if it took some: the integral of T_P - T_P0 over X_p.
+    /// What lifts the standing boom is not in it.
+    [[nodiscard]] double piston_work_J() const noexcept { return piston_work_J_; }
 
   private:
     std::string name_;
