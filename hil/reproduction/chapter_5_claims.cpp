@@ -100,7 +100,9 @@ std::vector<Claim> chapter_5_claims() {
              return {larger("R9, largest above 12 Hz over largest below",
                             band_ratio(r.a, R9_m, {12.0, 60.0}, {0.3, 12.0}))};
          }},
-        {"5-A-12", "5, case A", "36", "The same 18 Hz dominate the boom's bending", "18 Hz", "",
+        {"5-A-12", "5, case A", "36", "The same 18 Hz dominate the boom's bending", "18 Hz",
+         "The catch would have to excite the boom's own bending, which is there at 18 Hz, more than the load's bounce, "
+         "which bends the boom too",
          [](const ThesisRuns& r) -> Measures { return {frequency("q1, dominant", 18.0, dominant_Hz(r.a, q1_m))}; }},
         {"5-A-13", "5, case A", "32", "7 Hz dominate the track rotation", "7 Hz", ground,
          [](const ThesisRuns& r) -> Measures {

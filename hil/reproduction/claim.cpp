@@ -58,14 +58,14 @@ Row answer(const Claim& claim, const ThesisRuns& runs) {
         row.here +=
             fmt::format("{}{} {}", row.here.empty() ? "" : "; ", measure.name, with_unit(measure.value, measure.unit));
     }
-    row.reason = fmt::format("{} is {}; holds for {}", worst.name, with_unit(worst.value, worst.unit),
-                             words(worst.holds, worst.unit));
+    row.reason = fmt::format("{}holds for {}",
+                             row.measures.size() == 1 ? "" : worst.name + " decides: ", words(worst.holds, worst.unit));
     if (worst.in_kind.low != worst.holds.low || worst.in_kind.high != worst.holds.high) {
         row.reason += fmt::format(", in kind for {}", words(worst.in_kind, worst.unit));
     }
     if (row.verdict == Verdict::holds) {
         row.would_hold_if.clear();
-    } else if (row.would_hold_if.empty()) {
+    } else if (row.verdict == Verdict::does_not_hold && row.would_hold_if.empty()) {
         row.would_hold_if = fmt::format("{} would have to be {}", worst.name, words(worst.holds, worst.unit));
     }
     return row;

@@ -73,8 +73,8 @@ struct Row {
     std::vector<Measure> measures;  ///< empty if not examined
     Verdict verdict = Verdict::not_examined;
     std::string here;           ///< measured values with units
-    std::string reason;         ///< which measure decided and its range
-    std::string would_hold_if;  ///< empty where the claim holds
+    std::string reason;         ///< which measure decided, where there are several, and its ranges
+    std::string would_hold_if;  ///< empty where the claim holds, and perhaps where it does in kind
 };
 
 /// Asks the runs about every claim, in the thesis's order. A row is as good as the worst of its measures.

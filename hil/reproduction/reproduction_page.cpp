@@ -149,7 +149,7 @@ class Page {
             if (row.section != section) {
                 put("{}<h2>Chapter {}</h2>\n<table>\n<thead><tr><th style=\"width:6rem\">row</th><th "
                     "style=\"width:28%\">claim</th><th style=\"width:11%\">thesis</th><th>here</th><th "
-                    "style=\"width:9rem\">verdict</th></tr></thead>\n<tbody>\n",
+                    "style=\"width:10rem\">verdict</th></tr></thead>\n<tbody>\n",
                     section.empty() ? "" : "</tbody>\n</table>\n", escaped(row.section));
                 section = row.section;
             }
