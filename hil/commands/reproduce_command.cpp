@@ -26,14 +26,20 @@ int reproduce(const ReproduceOptions& options) {
     using namespace reproduction;
     const ThesisRuns runs = run_thesis({}, [](std::string_view name) { std::cerr << fmt::format("{} ...\n", name); });
     const std::vector<Row> rows = judge(runs);
+    Appendix appendix;
+    if (options.json || !options.out.empty()) {
+        std::cerr << "misprints ...\nsensitivity ...\n";
+        appendix.misprints = misprint_rows();
+        appendix.sensitivity = run_sensitivity([](int, int) {});
+    }
     if (!options.out.empty()) {
         const std::filesystem::path folder(options.out);
         std::cerr << "report ...\n";
-        write_whole_file(folder / "reproduction.html", page_of(rows, runs));
-        write_whole_file(folder / "reproduction.json", json_of(rows));
+        write_whole_file(folder / "reproduction.html", page_of(rows, appendix, runs));
+        write_whole_file(folder / "reproduction.json", json_of(rows, appendix));
         std::cerr << fmt::format("wrote {}\n", (folder / "reproduction.html").string());
     }
-    std::cout << (options.json ? json_of(rows) : table_of(rows)) << std::flush;
+    std::cout << (options.json ? json_of(rows, appendix) : table_of(rows)) << std::flush;
     return std::cout ? exit_done : exit_failed;
 }
 

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "hil/plot.hpp"
-#include "hil/reproduction/misprints.hpp"
 #include "hil/reproduction/reproduction_report.hpp"
 
 namespace steadyboom::hil::reproduction {
@@ -96,7 +95,8 @@ struct Look {
 
 class Page {
   public:
-    Page(const std::vector<Row>& rows, const ThesisRuns& runs) : rows_(rows), runs_(runs) {}
+    Page(const std::vector<Row>& rows, const Appendix& appendix, const ThesisRuns& runs)
+        : rows_(rows), appendix_(appendix), runs_(runs) {}
 
     std::string text() {
         put("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -106,6 +106,7 @@ class Page {
         put_head();
         put_claims();
         put_misprints();
+        put_sensitivity();
         put_figures();
         put("<p class=\"soft\">Steadyboom {}</p>\n</body>\n</html>\n", STEADYBOOM_VERSION);
         return with_plots();
@@ -175,10 +176,28 @@ class Page {
             "style=\"width:17%\">printed</th><th style=\"width:17%\">used</th><th>what decides</th><th>with the "
             "printed "
             "one</th></tr></thead>\n<tbody>\n");
-        for (const MisprintRow& row : misprint_rows()) {
+        for (const MisprintRow& row : appendix_.misprints) {
             put("<tr><td>{}</td><td data-k=\"printed\">{}</td><td data-k=\"used\">{}</td><td>{}</td><td>{}</td></tr>\n",
                 escaped(row.where), escaped(row.printed), escaped(row.used), escaped(row.calculation),
                 escaped(row.consequence));
+        }
+        put("</tbody>\n</table>\n");
+    }
+
+    void put_sensitivity() {
+        put("<h2>Sensitivity</h2>\n<p class=\"soft\">What the thesis leaves open, varied over a range; claims in "
+            "words, "
+            "without a law and with law 2, and which variations turn the answer.</p>\n<ul>\n");
+        for (const SensitivityRange& range : appendix_.sensitivity.ranges) {
+            put("<li>{}: {} <span class=\"soft\">({})</span></li>\n", escaped(range.parameter), escaped(range.range),
+                escaped(range.reason));
+        }
+        put("</ul>\n<table>\n<thead><tr><th style=\"width:38%\">claim</th><th style=\"width:10%\">case</th><th "
+            "style=\"width:14%\">as shipped</th><th>turned by</th></tr></thead>\n<tbody>\n");
+        for (const SensitivityVerdict& verdict : appendix_.sensitivity.verdicts) {
+            put("<tr><td>{}</td><td>{}</td><td data-k=\"as shipped\">{}</td><td data-k=\"turned by\">{}</td></tr>\n",
+                escaped(verdict.claim), escaped(verdict.case_name), verdict.nominal ? "holds" : "does not hold",
+                verdict.changed.empty() ? "nothing" : escaped(fmt::format("{}", fmt::join(verdict.changed, "; "))));
         }
         put("</tbody>\n</table>\n");
     }
@@ -325,6 +344,7 @@ class Page {
     }
 
     const std::vector<Row>& rows_;
+    const Appendix& appendix_;
     const ThesisRuns& runs_;
     std::string text_;
     std::vector<Plot> plots_;
@@ -333,8 +353,8 @@ class Page {
 
 }  // namespace
 
-std::string page_of(const std::vector<Row>& rows, const ThesisRuns& runs) {
-    return Page(rows, runs).text();
+std::string page_of(const std::vector<Row>& rows, const Appendix& appendix, const ThesisRuns& runs) {
+    return Page(rows, appendix, runs).text();
 }
 
 }  // namespace steadyboom::hil::reproduction

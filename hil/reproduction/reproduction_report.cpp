@@ -56,7 +56,7 @@ std::string table_of(const std::vector<Row>& rows) {
     return text + "\n";
 }
 
-std::string json_of(const std::vector<Row>& rows) {
+std::string json_of(const std::vector<Row>& rows, const Appendix& appendix) {
     nlohmann::ordered_json document{{"counts", counts_json(rows)}, {"rows", nlohmann::ordered_json::array()}};
     for (const Row& row : rows) {
         nlohmann::ordered_json measures = nlohmann::ordered_json::array();
@@ -78,6 +78,41 @@ std::string json_of(const std::vector<Row>& rows) {
                                     {"verdict", name_of(row.verdict)},
                                     {"reason", row.reason},
                                     {"would_hold_if", row.would_hold_if}});
+    }
+    document["misprints"] = nlohmann::ordered_json::array();
+    for (const MisprintRow& row : appendix.misprints) {
+        nlohmann::ordered_json numbers = nlohmann::ordered_json::object();
+        for (const MisprintNumber& number : row.numbers) {
+            numbers[number.key] = number_or_null(number.value);
+        }
+        document["misprints"].push_back({{"id", row.id},
+                                         {"where", row.where},
+                                         {"printed", row.printed},
+                                         {"used", row.used},
+                                         {"calculation", row.calculation},
+                                         {"consequence", row.consequence},
+                                         {"numbers", numbers}});
+    }
+    document["sensitivity"] = {{"runs", nlohmann::ordered_json::array()},
+                               {"verdicts", nlohmann::ordered_json::array()}};
+    for (const SensitivityRow& row : appendix.sensitivity.rows) {
+        nlohmann::ordered_json figures = nlohmann::ordered_json::object();
+        for (const FigureRow& figure : figure_rows) {
+            figures[std::string(figure.key)] = number_or_null(row.figures.*figure.value);
+        }
+        document["sensitivity"]["runs"].push_back({{"parameter", row.parameter},
+                                                   {"value", row.value},
+                                                   {"factor", row.factor},
+                                                   {"case", row.case_name},
+                                                   {"law", controllers::name_of(row.law)},
+                                                   {"failure", row.failure},
+                                                   {"figures", figures}});
+    }
+    for (const SensitivityVerdict& verdict : appendix.sensitivity.verdicts) {
+        document["sensitivity"]["verdicts"].push_back({{"claim", verdict.claim},
+                                                       {"case", verdict.case_name},
+                                                       {"nominal", verdict.nominal},
+                                                       {"changed", verdict.changed}});
     }
     return document.dump(2) + "\n";
 }

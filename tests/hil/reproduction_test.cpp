@@ -212,6 +212,28 @@ const std::vector<Row>& rows() {
     return made;
 }
 
+/// Made up: what the appendix holds has its own tests.
+const Appendix& appendix() {
+    static const Appendix made{
+        .misprints = {{.id = "m",
+                       .where = "3.1.3-2 <a>",
+                       .printed = "1",
+                       .used = "2",
+                       .calculation = "sum",
+                       .consequence = "none",
+                       .numbers = {{"stiffness_N_m", 3.0}}}},
+        .sensitivity = {.ranges = {{"soil.poisson_ratio", "0.2 to 0.4", "open"}},
+                        .rows = {{.parameter = "soil.poisson_ratio",
+                                  .value = "0.2",
+                                  .factor = 0.5,
+                                  .case_name = "case-a",
+                                  .law = controllers::LawKind::none,
+                                  .figures = {},
+                                  .failure = ""}},
+                        .verdicts = {{"ropes stay taut", "case-a", true, {"soil.poisson_ratio = 0.2"}}}}};
+    return made;
+}
+
 TEST(Reproduction, VerdictsAreTheModelsOfToday) {
     ASSERT_EQ(rows().size(), pinned.size());
     for (std::size_t i = 0; i < pinned.size(); ++i) {
@@ -287,7 +309,7 @@ TEST(Reproduction, EnergyOfTheMotionGoesWhereTheRunsSay) {
 }
 
 TEST(Reproduction, JsonHoldsEveryRowMeasureAndRange) {
-    const auto document = nlohmann::json::parse(json_of(rows()));
+    const auto document = nlohmann::json::parse(json_of(rows(), appendix()));
     EXPECT_EQ(document.at("counts").at("rows"), rows().size());
     EXPECT_EQ(document.at("counts").at("does not hold"), count(rows(), Verdict::does_not_hold));
     ASSERT_EQ(document.at("rows").size(), rows().size());
@@ -305,6 +327,16 @@ TEST(Reproduction, JsonHoldsEveryRowMeasureAndRange) {
     }
 }
 
+TEST(Reproduction, JsonAndPageHoldTheAppendix) {
+    const auto document = nlohmann::json::parse(json_of(rows(), appendix()));
+    EXPECT_EQ(document.at("misprints").at(0).at("numbers").at("stiffness_N_m"), 3.0);
+    EXPECT_EQ(document.at("sensitivity").at("runs").at(0).at("figures").size(), figure_rows.size());
+    EXPECT_EQ(document.at("sensitivity").at("verdicts").at(0).at("changed").at(0), "soil.poisson_ratio = 0.2");
+    const std::string page = page_of(rows(), appendix(), runs());
+    EXPECT_NE(page.find("3.1.3-2 &lt;a&gt;"), std::string::npos);
+    EXPECT_NE(page.find("soil.poisson_ratio = 0.2"), std::string::npos);
+}
+
 TEST(Reproduction, TableListsEveryRow) {
     const std::string table = table_of(rows());
     for (const Row& row : rows()) {
@@ -313,7 +345,7 @@ TEST(Reproduction, TableListsEveryRow) {
 }
 
 TEST(Reproduction, PageIsSelfContainedAndNamesEveryRowAndFigure) {
-    const std::string page = page_of(rows(), runs());
+    const std::string page = page_of(rows(), appendix(), runs());
     for (const Row& row : rows()) {
         EXPECT_NE(page.find("<td>" + row.id + "</td>"), std::string::npos) << row.id;
     }
