@@ -202,9 +202,11 @@ constexpr std::array pinned = std::to_array<Pinned>({
     {"8-17", Verdict::holds},
 });
 
-/// The runs and rows, made once for all tests.
+const auto silent = [](std::string_view) {};
+
+/// Half a second instead of ten: enough for the form of what is written, not for a verdict.
 const ThesisRuns& runs() {
-    static const ThesisRuns made = run_thesis({}, [](std::string_view) {});
+    static const ThesisRuns made = run_thesis({.duration_s = 0.5, .period_s = 0.005}, silent);
     return made;
 }
 const std::vector<Row>& rows() {
@@ -235,12 +237,24 @@ const Appendix& appendix() {
 }
 
 TEST(Reproduction, VerdictsAreTheModelsOfToday) {
-    ASSERT_EQ(rows().size(), pinned.size());
+    const ThesisRuns full = run_thesis({}, silent);
+    const std::vector<Row> judged = judge(full);
+    ASSERT_EQ(judged.size(), pinned.size());
     for (std::size_t i = 0; i < pinned.size(); ++i) {
-        EXPECT_EQ(rows()[i].id, pinned[i].id);
-        EXPECT_EQ(name_of(rows()[i].verdict), name_of(pinned[i].verdict))
-            << rows()[i].id << ": " << rows()[i].here << "; " << rows()[i].reason;
+        EXPECT_EQ(judged[i].id, pinned[i].id);
+        EXPECT_EQ(name_of(judged[i].verdict), name_of(pinned[i].verdict))
+            << judged[i].id << ": " << judged[i].here << "; " << judged[i].reason;
+        for (const Measure& measure : judged[i].measures) {
+            EXPECT_TRUE(std::isfinite(measure.value)) << judged[i].id << ": " << measure.name;
+        }
     }
+    // Without a law the piston only yields with the oil, and the soil takes what the boom's own damping does not.
+    const double start_J = full.a.signal(Signal::crane_energy_J).front();
+    const double end_J = full.a.signal(Signal::crane_energy_J).back();
+    EXPECT_LT(std::abs(full.a.piston_work_J()), 0.01 * start_J);
+    EXPECT_LT(full.a.soil_work_J(), 0.0);
+    EXPECT_GT(full.a.soil_work_J(), -(start_J - end_J) * 1.1);
+    EXPECT_LT(full.a2.piston_work_J(), 0.0);
 }
 
 TEST(Reproduction, EveryRowSaysAllThatAReaderNeeds) {
@@ -258,7 +272,6 @@ TEST(Reproduction, EveryRowSaysAllThatAReaderNeeds) {
             EXPECT_TRUE(row.would_hold_if.empty()) << row.id;
         }
         for (const Measure& measure : row.measures) {
-            EXPECT_TRUE(std::isfinite(measure.value)) << row.id << ": " << measure.name;
             EXPECT_LE(measure.in_kind.low, measure.holds.low) << row.id << ": " << measure.name;
             EXPECT_GE(measure.in_kind.high, measure.holds.high) << row.id << ": " << measure.name;
             EXPECT_LE(measure.verdict(), row.verdict) << row.id << ": " << measure.name;
@@ -298,16 +311,6 @@ TEST(Reproduction, VerdictsFollowTheStatedRules) {
     EXPECT_EQ(same("", 1.2).verdict(), Verdict::holds_in_kind);
 }
 
-TEST(Reproduction, EnergyOfTheMotionGoesWhereTheRunsSay) {
-    // Without a law the piston only yields with the oil, and the soil takes what the boom's own damping does not.
-    const double start_J = runs().a.signal(Signal::crane_energy_J).front();
-    EXPECT_LT(std::abs(runs().a.piston_work_J()), 0.01 * start_J);
-    EXPECT_LT(runs().a.soil_work_J(), 0.0);
-    const double end_J = runs().a.signal(Signal::crane_energy_J).back();
-    EXPECT_GT(runs().a.soil_work_J(), -(start_J - end_J) * 1.1);
-    EXPECT_LT(runs().a2.piston_work_J(), 0.0);
-}
-
 TEST(Reproduction, JsonHoldsEveryRowMeasureAndRange) {
     const auto document = nlohmann::json::parse(json_of(rows(), appendix()));
     EXPECT_EQ(document.at("counts").at("rows"), rows().size());
@@ -320,7 +323,11 @@ TEST(Reproduction, JsonHoldsEveryRowMeasureAndRange) {
         ASSERT_EQ(row.at("measures").size(), rows()[i].measures.size());
         for (std::size_t k = 0; k < rows()[i].measures.size(); ++k) {
             const auto& measure = row["measures"][k];
-            EXPECT_EQ(measure.at("value").get<double>(), rows()[i].measures[k].value);
+            if (std::isfinite(rows()[i].measures[k].value)) {
+                EXPECT_EQ(measure.at("value").get<double>(), rows()[i].measures[k].value);
+            } else {
+                EXPECT_TRUE(measure.at("value").is_null());
+            }
             EXPECT_EQ(measure.at("holds").size(), 2u);
             EXPECT_EQ(measure.at("holds_in_kind").size(), 2u);
         }
@@ -357,8 +364,7 @@ TEST(Reproduction, PageIsSelfContainedAndNamesEveryRowAndFigure) {
 }
 
 TEST(Reproduction, RunsTooShortForASpectrumAreRefused) {
-    EXPECT_THROW((void)run_thesis({.duration_s = 0.005, .period_s = 0.001}, [](std::string_view) {}),
-                 std::invalid_argument);
+    EXPECT_THROW((void)run_thesis({.duration_s = 0.005, .period_s = 0.001}, silent), std::invalid_argument);
 }
 
 }  // namespace
