@@ -21,6 +21,7 @@
 #include "hil/lockstep_run.hpp"
 #include "hil/plant_config.hpp"
 #include "hil/plant_record.hpp"
+#include "hil/scratch_folder.hpp"
 #include "hil/whole_file.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/controller_config.hpp"
@@ -181,33 +182,11 @@ runtime::ControllerConfig controller_config(const RunOptions& options, const std
     return config;
 }
 
-/// A folder for sockets and rings, in memory, gone with this object.
-class ScratchFolder {
-  public:
-    ScratchFolder() {
-        std::string name = "/dev/shm/steadyboom.XXXXXX";
-        if (mkdtemp(name.data()) == nullptr) {
-            throw std::runtime_error("cannot make a folder in /dev/shm: " + std::string(std::strerror(errno)));
-        }
-        path_ = name;
-    }
-    ~ScratchFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    [[nodiscard]] const fs::path& path() const noexcept { return path_; }
-
-  private:
-    fs::path path_;
-};
-
 }  // namespace
 
 RunResult run_on_interface(const RunOptions& options, const std::string& interface, const fs::path& folder,
                            const std::function<void(const std::string&)>& progress) {
-    const ScratchFolder scratch;
+    const ScratchFolder scratch("/dev/shm");  // sockets and rings, in memory
     const fs::path absolute = fs::absolute(folder);
     runtime::CraneFile controllers_copy = options.crane_case;
     for (const std::string& mismatch : options.mismatches) {

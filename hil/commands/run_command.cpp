@@ -14,6 +14,7 @@
 #include "hil/process_run.hpp"
 #include "hil/report.hpp"
 #include "hil/run_folder.hpp"
+#include "hil/scratch_folder.hpp"
 
 namespace steadyboom::hil {
 
@@ -45,35 +46,13 @@ std::vector<controllers::LawKind> laws_to_run(const RunCommandOptions& options) 
     return {law};
 }
 
-/// A folder for the configuration files of a real-time run that leaves none behind.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "steadyboom-run.XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) {
-            throw std::runtime_error("cannot make a folder in " + fs::temp_directory_path().string());
-        }
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    [[nodiscard]] const fs::path& path() const noexcept { return path_; }
-
-  private:
-    fs::path path_;
-};
-
 RunResult run_one(const RunOptions& run, const RunCommandOptions& options, const fs::path& folder) {
     if (options.bus == "loopback") {
         return run_in_lockstep(run);
     }
     const auto progress = [](const std::string& line) { std::cerr << "  " << line << '\n'; };
     if (options.out.empty()) {
-        const TemporaryFolder temporary;
+        const ScratchFolder temporary(fs::temp_directory_path());
         return run_on_interface(run, options.bus, temporary.path(), progress);
     }
     fs::create_directories(folder);
