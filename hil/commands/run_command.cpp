@@ -144,7 +144,7 @@ void add_run_command(CLI::App& app, Action& selected) {
         ->check(between(50.0, 2000.0, "Hz"))
         ->capture_default_str();
     command->add_option("--duration-s", options->duration_s, "Time after the brake event; the case's own if not given")
-        ->check(between(1.0, 3600.0, "s"));
+        ->check(positive_up_to(3600.0, "s"));
     command->add_option("--seed", options->seed, "Of the sensor noise")
         ->check(between(0.0, 2'147'483'647.0, ""))
         ->capture_default_str();
