@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "controllers/interlock.hpp"
@@ -46,7 +47,7 @@ inline RunResult sample_run(controllers::LawKind law, double peak_R1_m) {
                 k < 2 ? plant::CraneMeasurement::never : (sensor == plant::boom_angle_rad ? 1U : 0U);
         }
         tick.record.measured_valid_bits = 0x1FFU & ~(1U << plant::line_angle_rad);
-        tick.record.samples_stamp_ns = k < 2 ? 0 : run.epoch_ns + (k - 1) * 5'000'000;
+        tick.record.samples_stamp_ns = k < 2 ? 0 : run.epoch_ns + (k - 1) * std::int64_t{5'000'000};
         tick.record.wanted_opening_m = 2e-3;
         tick.record.limited_opening_m = 1.5e-3;
         tick.record.applied_opening_m = 1.25e-3;
