@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "hil/figure_table.hpp"
+#include "hil/html_text.hpp"
 #include "hil/plot.hpp"
 #include "hil/whole_file.hpp"
 #include "plant/energy.hpp"
@@ -56,29 +57,6 @@ const Look& look_of(LawKind law) {
 }
 const Look& look_of(const RunResult& run) {
     return look_of(run.options.law);
-}
-
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char character : text) {
-        switch (character) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += character;
-        }
-    }
-    return result;
 }
 
 constexpr std::string_view style = R"(
@@ -147,7 +125,7 @@ class Report {
             "<title>Steadyboom: {0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n"
             "<h1>How the crane comes to rest: {0}</h1>\n"
             "<p class=\"soft\">{2}</p>\n",
-            escaped(shown.name), style, escaped(shown.description));
+            html_text(shown.name), style, html_text(shown.description));
         put_summary();
         put("</header>\n<main>\n");
         put_introduction();
@@ -206,7 +184,7 @@ class Report {
         put("</p>\n");
         for (const RunResult& run : runs_) {
             for (const std::string& remark : remarks(run)) {
-                put("<p class=\"warn\">{}</p>\n", escaped(remark));
+                put("<p class=\"warn\">{}</p>\n", html_text(remark));
             }
         }
         put("<div class=\"tiles\">\n");
@@ -598,7 +576,7 @@ class Report {
                 distinct.push_back(std::move(word));
             }
         }
-        return escaped(fmt::format("{}", fmt::join(distinct, "; ")));
+        return html_text(fmt::format("{}", fmt::join(distinct, "; ")));
     }
 
     void put_settings() {
@@ -608,7 +586,7 @@ class Report {
         const auto entry = [&](std::string_view name, const std::string& value) {
             put("<dt>{}</dt><dd>{}</dd>\n", name, value);
         };
-        entry("case", escaped(shown.name));
+        entry("case", html_text(shown.name));
         entry("control rate", said([](const RunResult& run) { return fmt::format("{:g} Hz", run.options.rate_Hz); }));
         entry("duration", said([](const RunResult& run) { return fmt::format("{:g} s", run.options.duration_s); }));
         entry("bus", said([](const RunResult& run) {

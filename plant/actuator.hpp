@@ -50,8 +50,7 @@ class Actuator {
     double spool_travel_m_;
     double piston_travel_m_;
     double supply_pressure_Pa_;
-    double
-        orifice_gain_;  ///< C_d pi D_v / sqrt(sigma), m^2 / sqrt(kg / m^3) * ... so that times X_v sqrt(Pa) it is m^3/s
+    double orifice_gain_;  ///< C_d pi D_v / sqrt(sigma); times X_v in m and a root of Pa it is m^3/s
 };
 
 }  // namespace steadyboom::plant

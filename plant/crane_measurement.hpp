@@ -35,7 +35,7 @@ enum class ValveState : std::uint8_t {
     fault_disabled = 0b0001,
 };
 
-/// What one tick's frames brought, in SI. `value[i]` holds the newest sample ever received; `fresh` says which came
+/// What one tick's frames brought, in SI. `value[i]` holds the newest good sample; `fresh` says which came
 /// this tick. Before the first sample `value[i]` is 0 and `age_ticks[i]` is `never`.
 struct CraneMeasurement {
     static constexpr std::uint32_t never = 0xFFFF'FFFFU;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "hil/html_text.hpp"
 #include "hil/plot.hpp"
 #include "hil/reproduction/reproduction_report.hpp"
 
@@ -51,29 +52,6 @@ tr{border-bottom:2px solid var(--line);padding:.4rem 0}td{border:0;padding:.12re
 td[data-k]::before{content:attr(data-k) ": ";color:var(--soft)}}
 @media print{body{font-size:9.5pt;padding:0;max-width:none}.plots{grid-template-columns:1fr 1fr}}
 )";
-
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char character : text) {
-        switch (character) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += character;
-        }
-    }
-    return result;
-}
 
 constexpr std::array<std::string_view, 4> marks{"●", "◐", "○", "–"};
 
@@ -151,19 +129,19 @@ class Page {
                 put("{}<h2>Chapter {}</h2>\n<table>\n<thead><tr><th style=\"width:6rem\">row</th><th "
                     "style=\"width:28%\">claim</th><th style=\"width:11%\">thesis</th><th>here</th><th "
                     "style=\"width:10rem\">verdict</th></tr></thead>\n<tbody>\n",
-                    section.empty() ? "" : "</tbody>\n</table>\n", escaped(row.section));
+                    section.empty() ? "" : "</tbody>\n</table>\n", html_text(row.section));
                 section = row.section;
             }
             const auto verdict = static_cast<std::size_t>(row.verdict);
             put("<tr><td>{}</td><td>{}<small>{}</small></td><td data-k=\"thesis\">{}</td><td data-k=\"here\">{}",
-                row.id, escaped(row.claim), row.figures == "-" ? "" : "Fig. " + row.figures, escaped(row.thesis),
-                escaped(row.here));
+                row.id, html_text(row.claim), row.figures == "-" ? "" : "Fig. " + row.figures, html_text(row.thesis),
+                html_text(row.here));
             if (row.verdict != Verdict::not_examined) {
-                put("<small>{}</small>", escaped(row.reason));
+                put("<small>{}</small>", html_text(row.reason));
             }
             if (!row.would_hold_if.empty()) {
                 put("<small>{}: {}</small>", row.verdict == Verdict::not_examined ? "Needs" : "Would have to be true",
-                    escaped(row.would_hold_if));
+                    html_text(row.would_hold_if));
             }
             put("</td><td class=\"v v{}\">{} {}</td></tr>\n", verdict, marks[verdict], name_of(row.verdict));
         }
@@ -178,8 +156,8 @@ class Page {
             "one</th></tr></thead>\n<tbody>\n");
         for (const MisprintRow& row : appendix_.misprints) {
             put("<tr><td>{}</td><td data-k=\"printed\">{}</td><td data-k=\"used\">{}</td><td>{}</td><td>{}</td></tr>\n",
-                escaped(row.where), escaped(row.printed), escaped(row.used), escaped(row.calculation),
-                escaped(row.consequence));
+                html_text(row.where), html_text(row.printed), html_text(row.used), html_text(row.calculation),
+                html_text(row.consequence));
         }
         put("</tbody>\n</table>\n");
     }
@@ -189,15 +167,15 @@ class Page {
             "words, "
             "without a law and with law 2, and which variations turn the answer.</p>\n<ul>\n");
         for (const SensitivityRange& range : appendix_.sensitivity.ranges) {
-            put("<li>{}: {} <span class=\"soft\">({})</span></li>\n", escaped(range.parameter), escaped(range.range),
-                escaped(range.reason));
+            put("<li>{}: {} <span class=\"soft\">({})</span></li>\n", html_text(range.parameter),
+                html_text(range.range), html_text(range.reason));
         }
         put("</ul>\n<table>\n<thead><tr><th style=\"width:38%\">claim</th><th style=\"width:10%\">case</th><th "
             "style=\"width:14%\">as shipped</th><th>turned by</th></tr></thead>\n<tbody>\n");
         for (const SensitivityVerdict& verdict : appendix_.sensitivity.verdicts) {
             put("<tr><td>{}</td><td>{}</td><td data-k=\"as shipped\">{}</td><td data-k=\"turned by\">{}</td></tr>\n",
-                escaped(verdict.claim), escaped(verdict.case_name), verdict.nominal ? "holds" : "does not hold",
-                verdict.changed.empty() ? "nothing" : escaped(fmt::format("{}", fmt::join(verdict.changed, "; "))));
+                html_text(verdict.claim), html_text(verdict.case_name), verdict.nominal ? "holds" : "does not hold",
+                verdict.changed.empty() ? "nothing" : html_text(fmt::format("{}", fmt::join(verdict.changed, "; "))));
         }
         put("</tbody>\n</table>\n");
     }
