@@ -28,24 +28,53 @@ constexpr std::uint32_t max_mismatch_ticks = 5;
 constexpr std::uint32_t max_send_failures = 2;
 constexpr double settle_s = 1.0;  ///< how long all must be well before ready, and before a reset
 
-/// Faults that leave no time for a ramp.
-constexpr std::uint32_t immediate = reason_estimate_not_finite | reason_emergency_stop | reason_guard;
+enum class ReasonEffect : std::uint8_t {
+    warn,
+    limit,
+    stop,
+    immediate,
+    lockout,  ///< immediate, and not to be reset
+};
 
-struct ReasonText {
+struct ReasonRow {
     InterlockReason reason;
+    ReasonEffect effect;
     const char* text;
 };
-constexpr std::array reason_texts = {
-    ReasonText{reason_channel_missing, "a required measurement is missing or bad"},
-    ReasonText{reason_estimate_not_finite, "the observer diverged"},
-    ReasonText{reason_emergency_stop, "emergency stop pressed or not heard"},
-    ReasonText{reason_valve_not_following, "the valve is not in the commanded state"},
-    ReasonText{reason_bus_fault, "frames cannot be sent"},
-    ReasonText{reason_overrun, "the control tick was too late"},
-    ReasonText{reason_operator_stop, "stopped by the operator"},
-    ReasonText{reason_guard, "the guard rejected a command"},
-    ReasonText{reason_not_armed, "not armed or engaged"},
+constexpr std::array reason_rows = {
+    ReasonRow{reason_channel_missing, ReasonEffect::stop, "a required measurement is missing or bad"},
+    ReasonRow{reason_estimate_not_finite, ReasonEffect::immediate, "the observer diverged"},
+    ReasonRow{reason_emergency_stop, ReasonEffect::immediate, "emergency stop pressed or not heard"},
+    ReasonRow{reason_valve_not_following, ReasonEffect::stop, "the valve is not in the commanded state"},
+    ReasonRow{reason_bus_fault, ReasonEffect::stop, "frames cannot be sent"},
+    ReasonRow{reason_overrun, ReasonEffect::stop, "the control tick was too late"},
+    ReasonRow{reason_operator_stop, ReasonEffect::stop, "stopped by the operator"},
+    ReasonRow{reason_guard, ReasonEffect::immediate, "the guard rejected a command"},
+    ReasonRow{reason_not_armed, ReasonEffect::warn, "not armed or engaged"},
+    ReasonRow{reason_interface_down, ReasonEffect::stop, "the CAN interface is down"},
+    ReasonRow{reason_interface_gone, ReasonEffect::stop, "the CAN interface is gone"},
+    ReasonRow{reason_bus_off, ReasonEffect::immediate, "the CAN controller is bus-off"},
+    ReasonRow{reason_bus_off_lockout, ReasonEffect::lockout,
+              "locked out: restarts did not cure bus-off; find the cause, then restart the controller"},
+    ReasonRow{reason_error_passive, ReasonEffect::limit, "the CAN controller is error-passive"},
+    ReasonRow{reason_error_warning, ReasonEffect::warn, "the CAN controller counts errors"},
+    ReasonRow{reason_flood, ReasonEffect::stop, "the bus is flooded"},
+    ReasonRow{reason_spoof, ReasonEffect::immediate, "a process on this machine sends as a device"},
+    ReasonRow{reason_frames_lost, ReasonEffect::warn, "the CAN interface lost frames"},
+    ReasonRow{reason_bus_setup, ReasonEffect::warn, "the CAN interface is not set up as configured"},
 };
+
+constexpr std::uint32_t reasons_with(ReasonEffect effect) noexcept {
+    std::uint32_t reasons = reason_none;
+    for (const ReasonRow& row : reason_rows) {
+        reasons |= row.effect == effect ? std::uint32_t{row.reason} : 0U;
+    }
+    return reasons;
+}
+constexpr std::uint32_t warning = reasons_with(ReasonEffect::warn);
+constexpr std::uint32_t limiting = reasons_with(ReasonEffect::limit);
+constexpr std::uint32_t lockout = reasons_with(ReasonEffect::lockout);
+constexpr std::uint32_t immediate = reasons_with(ReasonEffect::immediate) | lockout;
 
 /// The valve's own state that a commanded mode must lead to.
 ValveState expected_state(ValveMode mode) noexcept {
@@ -70,20 +99,22 @@ double checked_s(double time_s, const char* name) {
 }
 
 bool moves(InterlockState state) noexcept {
-    return state == InterlockState::engaging || state == InterlockState::active || state == InterlockState::stopping;
+    return state == InterlockState::engaging || state == InterlockState::active || state == InterlockState::limited ||
+           state == InterlockState::stopping;
 }
 
 }  // namespace
 
 const char* name_of(InterlockState state) noexcept {
-    constexpr std::array names = {"STANDBY", "READY", "HOLD", "ENGAGING", "ACTIVE", "STOPPING", "FAULT_HOLD"};
+    constexpr std::array names = {"STANDBY", "READY",    "HOLD",       "ENGAGING",
+                                  "ACTIVE",  "STOPPING", "FAULT_HOLD", "LIMITED"};
     const auto index = static_cast<std::size_t>(state);
     return index < names.size() ? names[index] : "?";
 }
 
 std::string reasons_in_words(std::uint32_t reasons) {
     std::string words;
-    for (const ReasonText& row : reason_texts) {
+    for (const ReasonRow& row : reason_rows) {
         if ((reasons & row.reason) != 0) {
             words += words.empty() ? "" : ", ";
             words += row.text;
@@ -99,7 +130,7 @@ Interlock::Interlock(const InterlockConfig& config)
 
 std::uint32_t Interlock::present_faults(const CraneMeasurement& measured, const CraneEstimate& estimate,
                                         const Health& health) noexcept {
-    std::uint32_t faults = reason_none;
+    std::uint32_t faults = health.bus_reasons;
     const bool channels_good = std::ranges::all_of(required_channels, [&](plant::Sensor sensor) {
         const auto i = static_cast<std::size_t>(sensor);
         return measured.age_ticks[i] <= max_age_ticks && (measured.valid[i] || measured.age_ticks[i] > 0);
@@ -148,14 +179,14 @@ bool Interlock::obey(OperatorIntent intent, std::uint32_t faults) noexcept {
             }
             return false;
         case OperatorIntent::disengage:
-            if (state_ == InterlockState::engaging || state_ == InterlockState::active) {
+            if (moves(state_) && state_ != InterlockState::stopping) {
                 state_ = InterlockState::stopping;
                 after_stop_ = InterlockState::hold;
                 return true;
             }
             return false;
         case OperatorIntent::reset:
-            if (state_ == InterlockState::fault_hold && clear_ticks_ >= ready_ticks_) {
+            if (state_ == InterlockState::fault_hold && clear_ticks_ >= ready_ticks_ && (latched_ & lockout) == 0) {
                 state_ = InterlockState::standby;
                 latched_ = reason_none;
                 clear_ticks_ = 0;
@@ -171,14 +202,13 @@ bool Interlock::obey(OperatorIntent intent, std::uint32_t faults) noexcept {
 
 Permission Interlock::evaluate(const CraneMeasurement& measured, const CraneEstimate& estimate, const Health& health,
                                OperatorIntent intent) noexcept {
-    const std::uint32_t faults = present_faults(measured, estimate, health);
+    const std::uint32_t present = present_faults(measured, estimate, health);
+    const std::uint32_t faults = present & ~warning;
     clear_ticks_ = faults == reason_none ? std::min(clear_ticks_ + 1, ready_ticks_) : 0;
     accepted_ = obey(intent, faults);
 
     const bool armed = state_ == InterlockState::hold || moves(state_);
-    if (armed) {
-        latched_ |= faults;
-    }
+    latched_ |= faults & (armed ? ~limiting : lockout);
     if ((latched_ & immediate) != 0) {
         state_ = InterlockState::fault_hold;
     } else if (latched_ != reason_none && state_ != InterlockState::fault_hold) {
@@ -202,9 +232,14 @@ Permission Interlock::evaluate(const CraneMeasurement& measured, const CraneEsti
             }
             break;
         case InterlockState::engaging:
-            authority_ = std::min(1.0, authority_ + ramp_up_per_tick_);
-            if (authority_ >= 1.0) {
-                state_ = InterlockState::active;
+        case InterlockState::active:
+        case InterlockState::limited:
+            if ((faults & limiting) != 0) {
+                state_ = InterlockState::limited;
+                authority_ = std::max(std::min(authority_, limited_authority), authority_ - ramp_down_per_tick_);
+            } else {
+                authority_ = std::min(1.0, authority_ + ramp_up_per_tick_);
+                state_ = authority_ < 1.0 ? InterlockState::engaging : InterlockState::active;
             }
             break;
         case InterlockState::stopping:
@@ -214,13 +249,12 @@ Permission Interlock::evaluate(const CraneMeasurement& measured, const CraneEsti
             }
             break;
         case InterlockState::hold:
-        case InterlockState::active:
         case InterlockState::fault_hold:
             break;
     }
 
     Permission permit;
-    permit.reasons = latched_ | (armed ? 0U : faults);
+    permit.reasons = latched_ | (present & (armed ? warning | limiting : ~0U));
     if (moves(state_)) {
         permit.mode = ValveMode::active;
         permit.authority = authority_;

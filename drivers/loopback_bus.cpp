@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/error_message.hpp"
+
 namespace steadyboom::drivers {
 
 class LoopbackBus::Endpoint final : public CanBus {
@@ -15,10 +17,15 @@ class LoopbackBus::Endpoint final : public CanBus {
         for (std::size_t i = 0; i < count; ++i) {
             into[i] = ring_[oldest_];
             oldest_ = (oldest_ + 1) % ring_.size();
-            status_.error_frames += into[i].error ? 1U : 0U;
+            if (into[i].error) {
+                note_error_message(into[i], status_);
+            } else if (status_.link == LinkState::bus_off) {
+                status_.link = LinkState::active;
+            }
         }
         waiting_frames_ -= count;
         status_.received_frames += count;
+        status_.floods += count > flood_frames ? 1U : 0U;
         return count;
     }
 

@@ -3,6 +3,8 @@
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
+#include <linux/ethtool.h>
+#include <linux/sockios.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -17,6 +19,8 @@
 #include <system_error>
 #include <tuple>
 #include <utility>
+
+#include "drivers/error_message.hpp"
 
 namespace steadyboom::drivers {
 namespace {
@@ -96,36 +100,52 @@ std::string reason(int error) {
     return std::generic_category().message(error);
 }
 
-/// Opens, sets up and binds a socket, and says how large a receive buffer it got. Throws std::runtime_error.
-std::pair<int, int> open_socket(const std::string& interface, const SocketCanOptions& options) {
+ifreq request_for(const std::string& interface) {
     ifreq request{};
     if (interface.empty() || interface.size() >= sizeof request.ifr_name) {
         fail(interface, "not an interface name: allowed is 1 to 15 characters");
     }
-    Socket socket;
+    std::copy(interface.begin(), interface.end(), std::begin(request.ifr_name));
+    return request;
+}
+
+int interface_index(const Socket& socket, const std::string& interface) {
+    ifreq request = request_for(interface);
     if (socket.fd() < 0) {
         fail(interface, "this kernel opens no CAN socket (" + reason(errno) + "): modprobe can-raw");
     }
-    std::copy(interface.begin(), interface.end(), std::begin(request.ifr_name));
     if (::ioctl(socket.fd(), SIOCGIFINDEX, &request) != 0) {
         fail(interface, "there is none (" + reason(errno) + "): plug the adapter in, or ip link add " + interface +
                             " type vcan && ip link set " + interface + " up");
     }
-    std::vector<can_filter> filters;
-    filters.reserve(options.filters.size());
-    for (const auto& filter : options.filters) {
-        filters.push_back({.can_id = filter.id, .can_mask = CAN_SFF_MASK});
+    return request.ifr_ifindex;
+}
+
+can_filter kernel_filter(const CanFilter& filter) noexcept {
+    if (filter.extended) {
+        return {.can_id = filter.id | CAN_EFF_FLAG, .can_mask = CAN_EFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG};
     }
+    return {.can_id = filter.id, .can_mask = CAN_SFF_MASK};
+}
+
+/// Opens, sets up and binds a socket, and says how large a receive buffer it got. Throws std::runtime_error.
+std::pair<int, int> open_socket(const std::string& interface, const SocketCanOptions& options) {
+    Socket socket;
+    const int index = interface_index(socket, interface);
+    std::vector<can_filter> filters(options.filters.size());
+    std::ranges::transform(options.filters, filters.begin(), kernel_filter);
     if (!filters.empty() && ::setsockopt(socket.fd(), SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
                                          static_cast<socklen_t>(filters.size() * sizeof(can_filter))) != 0) {
         fail(interface, "the kernel refuses " + std::to_string(filters.size()) + " filters (" + reason(errno) + ")");
     }
+    // Own frames do not come back (CAN_RAW_RECV_OWN_MSGS is off by default): an echo is no proof of transmission.
     const can_err_mask_t errors = options.error_messages ? CAN_ERR_MASK : 0U;
-    if (!socket.set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) || !socket.set(SOL_SOCKET, SO_RXQ_OVFL, 1)) {
+    if (!socket.set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) || !socket.set(SOL_SOCKET, SO_RXQ_OVFL, 1) ||
+        !socket.set(SOL_SOCKET, SO_TIMESTAMPNS, 1)) {
         fail(interface, "the kernel refuses a socket option (" + reason(errno) + "): Linux 5.10 or newer is needed");
     }
-    if (!socket.set(SOL_SOCKET, SO_RCVBUFFORCE, options.receive_buffer_bytes) &&
-        !socket.set(SOL_SOCKET, SO_RCVBUF, options.receive_buffer_bytes)) {
+    const int asked_bytes = options.receive_buffer_frames * kernel_bytes_per_frame / 2;  // the kernel doubles it
+    if (!socket.set(SOL_SOCKET, SO_RCVBUFFORCE, asked_bytes) && !socket.set(SOL_SOCKET, SO_RCVBUF, asked_bytes)) {
         fail(interface, "the kernel refuses a receive buffer (" + reason(errno) + ")");
     }
     int granted_bytes = 0;
@@ -134,7 +154,7 @@ std::pair<int, int> open_socket(const std::string& interface, const SocketCanOpt
 
     sockaddr_can address{};
     address.can_family = AF_CAN;
-    address.can_ifindex = request.ifr_ifindex;
+    address.can_ifindex = index;
     if (::bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
         fail(interface,
              "cannot be bound (" + reason(errno) + "): is it a CAN interface? see ip -details link show " + interface);
@@ -144,10 +164,27 @@ std::pair<int, int> open_socket(const std::string& interface, const SocketCanOpt
 
 }  // namespace
 
+std::string interface_driver(const std::string& interface) {
+    const Socket socket;
+    (void)interface_index(socket, interface);
+    ifreq request = request_for(interface);
+    ethtool_drvinfo info{};
+    info.cmd = ETHTOOL_GDRVINFO;
+    request.ifr_data = reinterpret_cast<char*>(&info);
+    if (::ioctl(socket.fd(), SIOCETHTOOL, &request) != 0) {
+        return {};
+    }
+    return {std::begin(info.driver), std::find(std::begin(info.driver), std::end(info.driver), '\0')};
+}
+
+bool is_virtual_driver(const std::string& driver) noexcept {
+    return driver == "vcan" || driver == "vxcan";
+}
+
 /// What recvmmsg and sendmmsg point into; wired once.
 struct SocketCanBus::Buffers {
     struct Control {
-        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t))> bytes;
+        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t)) + CMSG_SPACE(sizeof(timespec))> bytes;
     };
 
     Buffers() {
@@ -174,14 +211,26 @@ struct SocketCanBus::Buffers {
 SocketCanBus::SocketCanBus(std::string interface, SocketCanOptions options)
     : interface_(std::move(interface)), options_(std::move(options)), buffers_(std::make_unique<Buffers>()) {
     std::tie(fd_, granted_buffer_bytes_) = open_socket(interface_, options_);
+    try {
+        expects_remote_ = options_.expect_remote.value_or(!is_virtual_driver(interface_driver(interface_)));
+    } catch (const std::exception&) {  // gone between the two
+        ::close(fd_);
+        throw;
+    }
 }
 
 SocketCanBus::~SocketCanBus() {
-    ::close(fd_);
+    for (const int fd : {fd_, fresh_fd_.load(), retired_fd_.load()}) {
+        if (fd >= 0) {
+            ::close(fd);
+        }
+    }
 }
 
 std::size_t SocketCanBus::receive(std::span<CanFrame> into) noexcept {
+    take_over_fresh_socket();
     std::size_t filled = 0;
+    std::size_t found = 0;
     while (filled < into.size()) {
         const auto wanted = std::min(batch_frames, into.size() - filled);
         for (std::size_t i = 0; i < wanted; ++i) {
@@ -196,35 +245,61 @@ std::size_t SocketCanBus::receive(std::span<CanFrame> into) noexcept {
             break;
         }
         const auto stamp_ns = steady_now_ns();
+        found += static_cast<std::size_t>(count);
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-            auto& message = buffers_->receive_messages[i];
-            for (auto* control = CMSG_FIRSTHDR(&message.msg_hdr); control != nullptr;
-                 control = CMSG_NXTHDR(&message.msg_hdr, control)) {
-                if (control->cmsg_level == SOL_SOCKET && control->cmsg_type == SO_RXQ_OVFL) {
-                    std::uint32_t socket_total = 0;
-                    std::memcpy(&socket_total, CMSG_DATA(control), sizeof socket_total);
-                    note_overflow(socket_total);
-                }
-            }
-            if (message.msg_len != CAN_MTU) {
-                ++status_.malformed_frames;
-                continue;
-            }
-            into[filled] = from_kernel(buffers_->receive_frames[i], stamp_ns);
-            status_.local_frames += (message.msg_hdr.msg_flags & MSG_DONTROUTE) != 0 ? 1U : 0U;
-            status_.error_frames += into[filled].error ? 1U : 0U;
-            ++status_.received_frames;
-            ++filled;
+            filled += accept(i, stamp_ns, into[filled]) ? 1U : 0U;
         }
         status_.receive_error = BusError::none;
         if (static_cast<std::size_t>(count) < wanted) {
             break;
         }
     }
+    status_.floods += found > flood_frames ? 1U : 0U;
     return filled;
 }
 
+bool SocketCanBus::accept(std::size_t index, std::int64_t stamp_ns, CanFrame& into) noexcept {
+    auto& message = buffers_->receive_messages[index];
+    std::int64_t kernel_stamp_ns = 0;
+    for (auto* control = CMSG_FIRSTHDR(&message.msg_hdr); control != nullptr;
+         control = CMSG_NXTHDR(&message.msg_hdr, control)) {
+        if (control->cmsg_level != SOL_SOCKET) {
+            continue;
+        }
+        if (control->cmsg_type == SO_RXQ_OVFL) {
+            std::uint32_t socket_total = 0;
+            std::memcpy(&socket_total, CMSG_DATA(control), sizeof socket_total);
+            note_overflow(socket_total);
+        } else if (control->cmsg_type == SCM_TIMESTAMPNS) {
+            timespec stamp{};
+            std::memcpy(&stamp, CMSG_DATA(control), sizeof stamp);
+            kernel_stamp_ns = std::int64_t{stamp.tv_sec} * 1'000'000'000 + stamp.tv_nsec;
+        }
+    }
+    ++status_.received_frames;
+    status_.newest_kernel_stamp_ns = kernel_stamp_ns;
+    if (message.msg_len != CAN_MTU) {
+        ++status_.malformed_frames;
+        return false;
+    }
+    const bool local = (message.msg_hdr.msg_flags & MSG_DONTROUTE) != 0;
+    status_.local_frames += local ? 1U : 0U;
+    if (local && expects_remote_) {
+        ++status_.spoofed_frames;
+        return false;
+    }
+    into = from_kernel(buffers_->receive_frames[index], stamp_ns);
+    into.kernel_stamp_ns = kernel_stamp_ns;
+    if (into.error) {
+        note_error_message(into, status_);
+    } else if (status_.link == LinkState::bus_off) {
+        status_.link = LinkState::active;  // nothing comes in while a controller is off the bus
+    }
+    return true;
+}
+
 SendResult SocketCanBus::send(std::span<const CanFrame> frames) noexcept {
+    take_over_fresh_socket();
     SendResult result;
     while (result.sent < frames.size() && result.error == BusError::none) {
         const auto wanted = std::min(batch_frames, frames.size() - result.sent);
@@ -235,6 +310,7 @@ SendResult SocketCanBus::send(std::span<const CanFrame> frames) noexcept {
         if (count < 0) {
             result.error = bus_error(errno);
             status_.last_errno = errno;
+            note_interface(result.error);
         } else {
             result.sent += static_cast<std::size_t>(count);
             if (static_cast<std::size_t>(count) < wanted) {
@@ -256,24 +332,47 @@ SendResult SocketCanBus::send(std::span<const CanFrame> frames) noexcept {
     return result;
 }
 
-bool SocketCanBus::reopen() noexcept {
-    try {
-        const auto [fd, granted_bytes] = open_socket(interface_, options_);
-        ::close(std::exchange(fd_, fd));
-        granted_buffer_bytes_ = granted_bytes;
-    } catch (const std::exception&) {
-        return false;
+void SocketCanBus::tend() noexcept {
+    if (const int retired = retired_fd_.exchange(-1); retired >= 0) {
+        ::close(retired);
     }
+    if (!gone_.load() || fresh_fd_.load() >= 0) {
+        return;
+    }
+    try {
+        fresh_fd_.store(open_socket(interface_, options_).first);
+    } catch (const std::exception&) {
+        // Still gone: the next call tries again, and receive() and send() go on saying so.
+    }
+}
+
+void SocketCanBus::take_over_fresh_socket() noexcept {
+    if (fresh_fd_.load(std::memory_order_relaxed) < 0 || retired_fd_.load(std::memory_order_relaxed) >= 0) {
+        return;
+    }
+    gone_.store(false);
+    retired_fd_.store(std::exchange(fd_, fresh_fd_.exchange(-1)));
     socket_overflow_frames_ = 0;
     status_.receive_error = BusError::none;
     status_.send_error = BusError::none;
-    return true;
+    status_.link = LinkState::active;
+    ++status_.reopens;
+}
+
+void SocketCanBus::note_interface(BusError error) noexcept {
+    if (error == BusError::down || error == BusError::gone) {
+        status_.link = LinkState::active;  // a controller starts anew with its interface
+    }
+    if (error == BusError::gone) {
+        gone_.store(true, std::memory_order_relaxed);
+    }
 }
 
 void SocketCanBus::note_receive_error(int error) noexcept {
     status_.receive_error = bus_error(error);
     status_.last_errno = error;
     ++status_.receive_errors;
+    note_interface(status_.receive_error);
 }
 
 void SocketCanBus::note_overflow(std::uint32_t socket_total) noexcept {

@@ -207,7 +207,7 @@ RunResult run_on_interface(const RunOptions& options, const std::string& interfa
     write_whole_file(absolute / "plant.toml", to_toml(plant));
 
     RunResult result{.options = options, .bus = interface};
-    drivers::SocketCanBus log(interface);
+    drivers::SocketCanBus log(interface, {.receive_buffer_frames = 1 << 14, .expect_remote = false});
 
     progress("starting steadyboom-plant and steadyboom-controller on " + interface);
     Process plant_process("steadyboom-plant", absolute / "plant.toml");

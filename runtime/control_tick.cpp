@@ -128,6 +128,7 @@ void ControlTick::run(const TickStart& start) noexcept {
     health_.overran = overruns_.broken(start.skipped_ticks) && overruns_are_faults_;
 
     const std::size_t count = bus_.receive(frames_);
+    health_.bus_reasons = bus_monitor_.reasons(bus_.status()) | link_reasons_.load(std::memory_order_relaxed);
     r.receive_duration_ns = lap_ns();
 
     const plant::CraneMeasurement measured = network_.decode({frames_.data(), count}, start.woke_ns);
@@ -187,9 +188,13 @@ void ControlTick::run(const TickStart& start) noexcept {
     r.cutoff_open = measured.cutoff_open ? 1 : 0;
     r.emergency_stop_healthy = measured.emergency_stop_healthy ? 1 : 0;
     r.received_frames = bus.received_frames;
-    r.dropped_frames = bus.receive_overflow_frames + bus.malformed_frames + network.unknown_id_frames +
-                       network.wrong_length_frames + network.remote_or_extended_frames;
+    r.dropped_frames = bus.receive_overflow_frames + bus.malformed_frames + bus.spoofed_frames +
+                       network.unknown_id_frames + network.wrong_length_frames + network.remote_or_extended_frames;
     r.send_errors = bus.send_errors;
+    r.newest_frame_kernel_stamp_ns = bus.newest_kernel_stamp_ns;
+    r.link_state = static_cast<std::uint8_t>(bus.link);
+    r.transmit_error_count = bus.transmit_error_count;
+    r.receive_error_count = bus.receive_error_count;
     answer_operator();
     ring_.push(r);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <optional>
 
@@ -13,6 +14,7 @@
 #include "drivers/command_guard.hpp"
 #include "drivers/crane_network.hpp"
 #include "plant/equilibrium.hpp"
+#include "runtime/bus_monitor.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/operator_mailbox.hpp"
 #include "runtime/overrun_monitor.hpp"
@@ -55,6 +57,9 @@ class ControlTick {
     /// From now on the operator's stop is in force, whatever else is asked: for the end of the program.
     void request_stop() noexcept { stopping_ = true; }
 
+    /// InterlockReason bits that whoever watches the link from outside holds to be true. From any thread.
+    void set_link_reasons(std::uint32_t reasons) noexcept { link_reasons_.store(reasons, std::memory_order_relaxed); }
+
     /// Of the newest tick.
     [[nodiscard]] const TickRecord& record() const noexcept { return record_; }
     [[nodiscard]] const plant::Equilibrium& equilibrium() const noexcept { return equilibrium_; }
@@ -62,9 +67,6 @@ class ControlTick {
     [[nodiscard]] const controllers::Interlock& interlock() const noexcept { return interlock_; }
 
   private:
-    /// A tick never reads more frames than this; what is left over stays in the socket for the next.
-    static constexpr std::size_t most_frames = 512;
-
     [[nodiscard]] controllers::OperatorIntent next_intent() noexcept;
     void answer_operator() noexcept;
     [[nodiscard]] std::int64_t lap_ns() noexcept;
@@ -87,12 +89,14 @@ class ControlTick {
     OverrunMonitor overruns_;
     bool overruns_are_faults_;
 
+    BusMonitor bus_monitor_;
+    std::atomic<std::uint32_t> link_reasons_{0};
     controllers::Health health_;
     double applied_linear_m_ = 0.0;  ///< linear-valve opening of the previous tick's flow, in force since then
     std::optional<OperatorRequest> request_;
     bool stopping_ = false;
     std::int64_t lap_start_ns_ = 0;
-    std::array<drivers::CanFrame, most_frames> frames_;
+    std::array<drivers::CanFrame, drivers::most_frames_a_tick> frames_;
     TickRecord record_;
 };
 

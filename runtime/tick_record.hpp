@@ -18,7 +18,7 @@ namespace steadyboom::runtime {
 /// start.
 struct TickRecord {
     /// Raised whenever the layout or a meaning below changes; readers refuse any other.
-    static constexpr std::uint32_t layout_version = 1;
+    static constexpr std::uint32_t layout_version = 2;
 
     std::uint64_t tick = 0;             ///< index k of the schedule; skipped ticks leave gaps
     std::int64_t time_ns = 0;           ///< when tick k was due, t0 + k T
@@ -54,9 +54,13 @@ struct TickRecord {
     std::uint8_t cutoff_energised = 0;  ///< 1: the guard's last word opened it
     std::uint8_t cutoff_open = 0;       ///< 1: the safety input reports it open
     std::uint8_t emergency_stop_healthy = 0;
-    std::uint32_t reserved = 0;
+    std::uint8_t link_state = 0;            ///< drivers::LinkState of the CAN controller
+    std::uint8_t transmit_error_count = 0;  ///< of the CAN controller
+    std::uint8_t receive_error_count = 0;
+    std::uint8_t reserved = 0;
 
     // Health of bus and schedule.
+    std::int64_t newest_frame_kernel_stamp_ns = 0;  ///< wall clock; recorded, never used for an age
     std::uint64_t received_frames = 0;
     std::uint64_t dropped_frames = 0;
     std::uint64_t send_errors = 0;

@@ -84,6 +84,10 @@ steadyboom::tick_t to_message(const TickRecord& record) {
     message.cutoff_energised = static_cast<std::int8_t>(record.cutoff_energised);
     message.cutoff_open = static_cast<std::int8_t>(record.cutoff_open);
     message.emergency_stop_healthy = static_cast<std::int8_t>(record.emergency_stop_healthy);
+    message.link_state = record.link_state;
+    message.transmit_error_count = record.transmit_error_count;
+    message.receive_error_count = record.receive_error_count;
+    message.newest_frame_kernel_stamp_ns = record.newest_frame_kernel_stamp_ns;
     message.received_frames = static_cast<std::int64_t>(record.received_frames);
     message.dropped_frames = static_cast<std::int64_t>(record.dropped_frames);
     message.send_errors = static_cast<std::int64_t>(record.send_errors);

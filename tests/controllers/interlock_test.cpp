@@ -26,7 +26,7 @@ constexpr int ready_ticks = 200;   // 1 s
 constexpr int engage_ticks = 100;  // 0.5 s
 constexpr int stop_ticks = 20;     // 0.1 s
 
-constexpr std::array all_states = {standby, ready, hold, engaging, active, stopping, fault_hold};
+constexpr std::array all_states = {standby, ready, hold, engaging, active, stopping, fault_hold, limited};
 constexpr std::array all_intents = {OperatorIntent::none,      OperatorIntent::arm,   OperatorIntent::engage,
                                     OperatorIntent::disengage, OperatorIntent::reset, OperatorIntent::stop};
 constexpr std::array required = {strain_lower_microstrain, strain_upper_microstrain, boom_angle_rad,  line_tension_N,
@@ -79,7 +79,8 @@ class Machine {
     Permission permit;
 };
 
-/// Brought there by the operator alone; fault_hold by a stop from hold, all well for over a second.
+/// Brought there by the operator alone; fault_hold by a stop from hold, all well for over a second; limited by a
+/// limiting fault, which lasts.
 Machine machine_in(InterlockState wanted) {
     Machine machine;
     const auto expect = [&](InterlockState state) { EXPECT_EQ(machine.state(), state) << name_of(wanted); };
@@ -116,6 +117,12 @@ Machine machine_in(InterlockState wanted) {
         expect(active);
         return machine;
     }
+    if (wanted == limited) {
+        machine.health.bus_reasons = reason_error_passive;
+        machine.run(stop_ticks);
+        expect(limited);
+        return machine;
+    }
     (void)machine.tick(OperatorIntent::disengage);
     machine.run(3);
     expect(stopping);
@@ -123,7 +130,7 @@ Machine machine_in(InterlockState wanted) {
 }
 
 bool moves(InterlockState state) {
-    return state == engaging || state == active || state == stopping;
+    return state == engaging || state == active || state == limited || state == stopping;
 }
 bool armed(InterlockState state) {
     return state == hold || moves(state);
@@ -149,6 +156,7 @@ void expect_permission_of_state(const Machine& machine, const std::string& where
             break;
         case engaging:
         case active:
+        case limited:
         case stopping:
             EXPECT_EQ(permit.mode, ValveMode::active) << where;
             EXPECT_TRUE(permit.cutoff_energised) << where;
@@ -176,7 +184,7 @@ Answer answer(InterlockState state, OperatorIntent intent) {
         case OperatorIntent::engage:
             return state == hold ? Answer{true, engaging} : Answer{false, state};
         case OperatorIntent::disengage:
-            return state == engaging || state == active ? Answer{true, stopping} : Answer{false, state};
+            return moves(state) && state != stopping ? Answer{true, stopping} : Answer{false, state};
         case OperatorIntent::reset:
             return state == fault_hold ? Answer{true, standby} : Answer{false, state};
         case OperatorIntent::stop:
@@ -303,6 +311,14 @@ const std::vector<Fault>& faults() {
                  machine.measured.valve_state = ValveState::fault_hold;
              }},
         };
+        for (const InterlockReason reason : {reason_interface_down, reason_interface_gone, reason_flood}) {
+            all.push_back(
+                {"bus", reason, false, 1, [reason](Machine& machine) { machine.health.bus_reasons = reason; }});
+        }
+        for (const InterlockReason reason : {reason_bus_off, reason_spoof}) {
+            all.push_back(
+                {"bus", reason, true, 1, [reason](Machine& machine) { machine.health.bus_reasons = reason; }});
+        }
         for (const Sensor channel : required) {
             all.push_back({"channel silent", reason_channel_missing, false, 1, [channel](Machine& machine) {
                                machine.measured.age_ticks[static_cast<std::size_t>(channel)] = 4;
@@ -347,6 +363,92 @@ TEST(InterlockTable, EveryFaultFromEveryStateLeadsWhereItMust) {
                 EXPECT_EQ(machine.state(), fault_hold) << where << ": within 0.1 s";
                 expect_permission_of_state(machine, where);
             }
+        }
+    }
+}
+
+TEST(Interlock, ErrorPassiveTakesAuthorityTo15PercentWhileItLastsAndLatchesNothing) {
+    Machine machine = machine_in(active);
+    machine.health.bus_reasons = reason_error_passive;
+    double last = 1.0;
+    for (int tick = 1; tick <= 17; ++tick) {
+        const Permission& permit = machine.tick();
+        EXPECT_EQ(machine.state(), limited);
+        EXPECT_NEAR(last - permit.authority, 0.05, 1e-12) << tick;
+        EXPECT_EQ(permit.reasons, reason_error_passive);
+        last = permit.authority;
+    }
+    for (int tick = 0; tick < 1000; ++tick) {
+        ASSERT_NEAR(machine.tick().authority, 0.15, 1e-12);
+    }
+    machine.health.bus_reasons = reason_none;
+    for (int tick = 1; tick < 85; ++tick) {
+        EXPECT_NEAR(machine.tick().authority, 0.15 + 0.01 * tick, 1e-12) << "back as slowly as when engaging";
+        EXPECT_EQ(machine.state(), engaging);
+        EXPECT_EQ(machine.permit.reasons, reason_none);
+    }
+    machine.run(2);
+    EXPECT_EQ(machine.state(), active);
+}
+
+TEST(Interlock, ALimitWhileEngagingNeverRaisesAuthority) {
+    Machine machine = machine_in(hold);
+    (void)machine.tick(OperatorIntent::engage);
+    machine.run(4);
+    const double before = machine.permit.authority;
+    machine.health.bus_reasons = reason_error_passive;
+    machine.run(100);
+    EXPECT_EQ(machine.state(), limited);
+    EXPECT_EQ(machine.permit.authority, before);
+}
+
+TEST(Interlock, ALimitStandsInTheWayOfReadyArmAndEngage) {
+    Machine machine = machine_in(ready);
+    machine.health.bus_reasons = reason_error_passive;
+    (void)machine.tick(OperatorIntent::arm);
+    EXPECT_FALSE(machine.interlock.accepted());
+    EXPECT_EQ(machine.state(), standby);
+
+    Machine held = machine_in(hold);
+    held.health.bus_reasons = reason_error_passive;
+    (void)held.tick(OperatorIntent::engage);
+    EXPECT_FALSE(held.interlock.accepted());
+    EXPECT_EQ(held.state(), hold) << "not latched";
+}
+
+TEST(Interlock, WarningsAreShownAndChangeNothing) {
+    for (const InterlockReason reason : {reason_error_warning, reason_frames_lost, reason_bus_setup}) {
+        for (const InterlockState state : {standby, ready, hold, engaging, active, fault_hold}) {
+            Machine machine = machine_in(state);
+            Machine unwarned = machine_in(state);
+            machine.health.bus_reasons = reason;
+            const Permission& permit = machine.tick();
+            const Permission& expected = unwarned.tick();
+            EXPECT_EQ(permit.reasons, expected.reasons | reason) << name_of(state);
+            EXPECT_EQ(permit.authority, expected.authority);
+            EXPECT_EQ(machine.state(), unwarned.state());
+        }
+        Machine machine;
+        machine.health.bus_reasons = reason;
+        machine.run(ready_ticks);
+        EXPECT_EQ(machine.state(), ready) << reason;
+        (void)machine.tick(OperatorIntent::arm);
+        EXPECT_TRUE(machine.interlock.accepted());
+    }
+}
+
+TEST(Interlock, BusOffLockoutHoldsInEveryStateAndIsNeverReset) {
+    for (const InterlockState state : all_states) {
+        Machine machine = machine_in(state);
+        machine.health.bus_reasons = reason_bus_off_lockout;
+        EXPECT_FALSE(machine.tick().motion());
+        machine.health.bus_reasons = reason_none;
+        machine.run(10 * ready_ticks);
+        for (const OperatorIntent intent : {OperatorIntent::reset, OperatorIntent::arm, OperatorIntent::engage}) {
+            (void)machine.tick(intent);
+            EXPECT_FALSE(machine.interlock.accepted()) << name_of(state);
+            EXPECT_EQ(machine.state(), fault_hold) << name_of(state);
+            EXPECT_NE(machine.permit.reasons & reason_bus_off_lockout, 0U);
         }
     }
 }
@@ -543,6 +645,10 @@ TEST(Interlock, NoSequenceOfInputsMovesTheValveWithoutArmAndEngageAndGoodChannel
             machine.valve_follows = true;
             const bool faulty = *rc::gen::inRange(0, 20) < fault_weight;
             const Fault* fault = nullptr;
+            const bool passive = *rc::gen::inRange(0, 20) == 0;
+            if (passive) {
+                machine.health.bus_reasons = reason_error_passive;
+            }
             if (faulty) {
                 fault = &faults()[*rc::gen::inRange<std::size_t>(0, faults().size())];
                 fault->begin(machine);
@@ -562,6 +668,10 @@ TEST(Interlock, NoSequenceOfInputsMovesTheValveWithoutArmAndEngageAndGoodChannel
                 const Permission& permit = machine.tick(now);
                 const InterlockState after = machine.state();
                 const bool fault_lasts = fault != nullptr && tick + 1 >= fault->ticks;
+                if (machine.health.bus_reasons == reason_error_passive) {
+                    RC_ASSERT(permit.authority <= std::max(last_authority - 0.05, limited_authority) + 1e-12);
+                    RC_ASSERT(permit.authority <= last_authority && after != engaging && after != active);
+                }
                 if (before == ready && after == hold) {
                     RC_ASSERT(now == OperatorIntent::arm && !fault_lasts);
                     arm_seen = true;
@@ -584,7 +694,8 @@ TEST(Interlock, NoSequenceOfInputsMovesTheValveWithoutArmAndEngageAndGoodChannel
                 RC_ASSERT(permit.motion() || permit.authority == 0.0);
                 RC_ASSERT(permit.motion() || permit.reasons != reason_none);
                 if (fault_lasts) {
-                    RC_ASSERT(after != engaging && after != active && after != ready && after != hold);
+                    RC_ASSERT(after != engaging && after != active && after != limited && after != ready &&
+                              after != hold);
                     RC_ASSERT(!fault->immediate || !permit.motion());
                     RC_ASSERT(tick + 1 < fault->ticks + stop_ticks + 1 || !permit.motion());
                 }
@@ -600,7 +711,7 @@ TEST(Interlock, NoSequenceOfInputsMovesTheValveWithoutArmAndEngageAndGoodChannel
 TEST(Interlock, EveryReasonHasItsOwnWordsAndTheyAreJoinedInOrder) {
     EXPECT_EQ(reasons_in_words(reason_none), "");
     std::vector<std::string> words;
-    for (int bit = 0; bit <= 8; ++bit) {
+    for (int bit = 0; bit <= 18; ++bit) {
         words.push_back(reasons_in_words(1U << bit));
         EXPECT_FALSE(words.back().empty()) << bit;
         EXPECT_EQ(std::ranges::count(words, words.back()), 1) << words.back();
@@ -611,7 +722,7 @@ TEST(Interlock, EveryReasonHasItsOwnWordsAndTheyAreJoinedInOrder) {
 }
 
 TEST(Interlock, StatesHaveTheirNames) {
-    const std::array names = {"STANDBY", "READY", "HOLD", "ENGAGING", "ACTIVE", "STOPPING", "FAULT_HOLD"};
+    const std::array names = {"STANDBY", "READY", "HOLD", "ENGAGING", "ACTIVE", "STOPPING", "FAULT_HOLD", "LIMITED"};
     for (std::size_t i = 0; i < all_states.size(); ++i) {
         EXPECT_STREQ(name_of(all_states[i]), names[i]);
     }

@@ -38,6 +38,10 @@ TEST(TickMessage, EachFieldOfTheRecordArrivesUnderItsOwnName) {
     record.applied_mode = 9;
     record.cutoff_permitted = 1;
     record.cutoff_open = 1;
+    record.link_state = 3;
+    record.transmit_error_count = 255;
+    record.receive_error_count = 29;
+    record.newest_frame_kernel_stamp_ns = 28;
     record.received_frames = 16;
     record.dropped_frames = 17;
     record.send_errors = 18;
@@ -109,6 +113,10 @@ TEST(TickMessage, EachFieldOfTheRecordArrivesUnderItsOwnName) {
     EXPECT_EQ(message.cutoff_energised, 0);
     EXPECT_EQ(message.cutoff_open, 1);
     EXPECT_EQ(message.emergency_stop_healthy, 0);
+    EXPECT_EQ(message.link_state, 3);
+    EXPECT_EQ(message.transmit_error_count, 255);
+    EXPECT_EQ(message.receive_error_count, 29);
+    EXPECT_EQ(message.newest_frame_kernel_stamp_ns, 28);
     EXPECT_EQ(message.received_frames, 16);
     EXPECT_EQ(message.dropped_frames, 17);
     EXPECT_EQ(message.send_errors, 18);

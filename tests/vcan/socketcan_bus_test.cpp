@@ -8,10 +8,12 @@
 #include <cerrno>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -125,12 +127,54 @@ TEST_F(SocketCanBusTest, EmptyBusGivesNothingAtOnceAndIsNoError) {
 TEST_F(SocketCanBusTest, MoreFramesThanOneKernelCallTakesAreDrainedAndSentWhole) {
     SocketCanBus one("steady0");
     SocketCanBus other("steady0");
-    EXPECT_EQ(send(one, numbered(1000)).sent, 1000U);
-    ASSERT_EQ(await(other, 1000), 1000U);
-    for (std::size_t i = 0; i < 1000; ++i) {
+    EXPECT_EQ(send(one, numbered(500)).sent, 500U);
+    ASSERT_EQ(await(other, 500), 500U);
+    for (std::size_t i = 0; i < 500; ++i) {
         ASSERT_EQ(frames_[i].data[0] + 256U * frames_[i].data[1], i);
     }
-    EXPECT_EQ(other.status().receive_overflow_frames, 0U) << "the buffer is larger than the kernel's default";
+    EXPECT_EQ(other.status().receive_overflow_frames, 0U);
+}
+
+TEST_F(SocketCanBusTest, WhateverPiledUpDuringAStallIsGoneAfterOneTicksReadAndTheNextFrameIsTheNewest) {
+    SocketCanBus device("steady0");
+    SocketCanBus stalled("steady0");
+    EXPECT_EQ(stalled.receive_buffer_frames(), static_cast<int>(most_frames_a_tick));
+    (void)send(device, numbered(1000));  // a second at 1000 frames/s
+    EXPECT_EQ(stalled.receive(std::span(frames_).first(most_frames_a_tick)), most_frames_a_tick);
+    EXPECT_EQ(frames_[0].data[0], 0) << "the oldest come first";
+    EXPECT_EQ(stalled.status().floods, 1U);
+    EXPECT_EQ(receive(stalled), 0U) << "nothing stale is left for a second tick";
+    (void)send(device, {{.id = 0x100, .length = 1, .data = {77}}});
+    ASSERT_EQ(await(stalled, 1), 1U);
+    EXPECT_EQ(frames_[0].data[0], 77);
+    EXPECT_EQ(stalled.status().receive_overflow_frames, 1000 - most_frames_a_tick);
+    EXPECT_EQ(stalled.status().floods, 1U);
+}
+
+TEST_F(SocketCanBusTest, SixtyFourFramesAtOnceAreNoFloodAndOneMoreIs) {
+    SocketCanBus device("steady0");
+    SocketCanBus bus("steady0");
+    (void)send(device, numbered(flood_frames));
+    EXPECT_EQ(receive(bus), flood_frames);
+    EXPECT_EQ(bus.status().floods, 0U);
+    (void)send(device, numbered(flood_frames + 1));
+    EXPECT_EQ(receive(bus), flood_frames + 1);
+    EXPECT_EQ(bus.status().floods, 1U);
+}
+
+TEST_F(SocketCanBusTest, KernelStampsAreWallClockTimeBesideTheSteadyStamp) {
+    SocketCanBus one("steady0");
+    SocketCanBus other("steady0");
+    timespec before{};
+    clock_gettime(CLOCK_REALTIME, &before);
+    (void)send(one, numbered(1));
+    ASSERT_EQ(await(other, 1), 1U);
+    timespec after{};
+    clock_gettime(CLOCK_REALTIME, &after);
+    EXPECT_GE(frames_[0].kernel_stamp_ns, before.tv_sec * 1'000'000'000 + before.tv_nsec);
+    EXPECT_LE(frames_[0].kernel_stamp_ns, after.tv_sec * 1'000'000'000 + after.tv_nsec);
+    EXPECT_EQ(other.status().newest_kernel_stamp_ns, frames_[0].kernel_stamp_ns);
+    EXPECT_LE(frames_[0].stamp_ns, steady_ns());
 }
 
 TEST_F(SocketCanBusTest, ReceiveIsBoundedByTheCallersRoom) {
@@ -168,6 +212,56 @@ TEST_F(SocketCanBusTest, KernelFiltersLetOnlyListedIdentifiersThroughInAnyForm) 
     EXPECT_TRUE(frames_[3].remote);
 }
 
+TEST_F(SocketCanBusTest, ExtendedFilterLetsExactlyItsDataFramesThrough) {
+    SocketCanBus sender("steady0");
+    SocketCanBus filtered("steady0", {.filters = {{.id = 0x0CFE3022, .extended = true}, {0x190}}});
+    (void)send(sender, {{.id = 0x0CFE3023, .length = 1, .extended = true},
+                        {.id = 0x022, .length = 1},
+                        {.id = 0x0CFE3022, .length = 1, .extended = true, .remote = true},
+                        {.id = 0x0CFE3022, .length = 2, .extended = true},
+                        {.id = 0x190, .length = 1}});
+    ASSERT_EQ(await(filtered, 2), 2U);
+    EXPECT_EQ(frames_[0].id, 0x0CFE3022U);
+    EXPECT_EQ(frames_[0].length, 2);
+    EXPECT_EQ(frames_[1].id, 0x190U);
+    EXPECT_EQ(receive(filtered), 0U);
+}
+
+TEST_F(SocketCanBusTest, FrameOfThisMachineIsASpoofWhereEverySenderIsElsewhere) {
+    SocketCanBus local("steady0");
+    SocketCanBus strict("steady0", {.filters = {{0x190}}, .expect_remote = true});
+    SocketCanBus lenient("steady0");
+    EXPECT_TRUE(strict.expects_remote());
+    EXPECT_FALSE(lenient.expects_remote()) << "on vcan all senders are on this machine";
+    (void)send(
+        local,
+        {{.id = 0x190, .length = 1}, {.id = CAN_ERR_BUSOFF, .length = 8, .error = true}, {.id = 0x191, .length = 1}});
+    EXPECT_EQ(await(lenient, 3), 3U);
+    EXPECT_EQ(receive(strict), 0U) << "dropped";
+    EXPECT_EQ(strict.status().spoofed_frames, 2U) << "what the filter keeps out is nobody's spoof";
+    EXPECT_EQ(strict.status().link, LinkState::active) << "a fake error message is not believed";
+    EXPECT_EQ(lenient.status().spoofed_frames, 0U);
+    EXPECT_EQ(lenient.status().local_frames, 3U);
+    EXPECT_EQ(lenient.status().bus_offs, 1U);
+}
+
+TEST_F(SocketCanBusTest, FrameFromTheOtherEndOfTheWireIsNoSpoof) {
+    // The far end in a network namespace of its own is as far as another machine.
+    run("ip netns add far && ip link add steady1 type vxcan peer name steady2 netns far && ip link set steady1 up && "
+        "ip -n far link set steady2 up");
+    {
+        SocketCanBus strict("steady1", {.expect_remote = true});
+        run("ip netns exec far cansend steady2 190#01");
+        EXPECT_EQ(await(strict, 1), 1U);
+        EXPECT_EQ(strict.status().local_frames, 0U);
+        EXPECT_EQ(strict.status().spoofed_frames, 0U);
+        run("cansend steady1 190#02");
+        EXPECT_EQ(receive(strict), 0U);
+        EXPECT_EQ(strict.status().spoofed_frames, 1U);
+    }
+    run("ip link del steady1 && ip netns del far");
+}
+
 TEST_F(SocketCanBusTest, ErrorMessageIsAValuePastAnyFilter) {
     SocketCanBus sender("steady0");
     SocketCanBus listening("steady0", {.filters = {{0x190}}});
@@ -177,6 +271,7 @@ TEST_F(SocketCanBusTest, ErrorMessageIsAValuePastAnyFilter) {
     EXPECT_TRUE(frames_[0].error);
     EXPECT_EQ(frames_[0].id, static_cast<std::uint32_t>(CAN_ERR_BUSOFF));
     EXPECT_EQ(listening.status().error_frames, 1U);
+    EXPECT_EQ(listening.status().link, LinkState::bus_off);
     (void)send(sender, {{.id = 0x055, .length = 0}});
     ASSERT_EQ(await(deaf, 1), 1U);
     EXPECT_EQ(frames_[0].id, 0x055U);
@@ -207,20 +302,23 @@ TEST_F(SocketCanBusTest, InterfaceDownIsAValueAndTheSameSocketComesBack) {
     EXPECT_EQ(other.status().receive_error, BusError::none);
 }
 
-TEST_F(SocketCanBusTest, DeletedInterfaceIsGoneUntilReopened) {
+TEST_F(SocketCanBusTest, DeletedInterfaceIsGoneUntilAnotherThreadHasOpenedASocketAnew) {
     SocketCanBus bus("steady0");
     (void)send(bus, numbered(2));
     run("ip link del steady0");
     EXPECT_EQ(receive(bus), 0U);
     EXPECT_EQ(bus.status().receive_error, BusError::gone);
     EXPECT_EQ(send(bus, numbered(1)).error, BusError::gone);
-    EXPECT_FALSE(bus.reopen()) << "there is nothing to open yet";
-    EXPECT_EQ(send(bus, numbered(1)).error, BusError::gone);
+    bus.tend();
+    EXPECT_EQ(send(bus, numbered(1)).error, BusError::gone) << "there is nothing to open yet";
 
     add_interface();
     EXPECT_EQ(send(bus, numbered(1)).error, BusError::gone) << "the old socket stays dead";
-    ASSERT_TRUE(bus.reopen());
+    std::thread(&SocketCanBus::tend, &bus).join();
+    EXPECT_EQ(bus.status().receive_error, BusError::gone) << "until the one who receives takes it over";
+    EXPECT_EQ(receive(bus), 0U);
     EXPECT_EQ(bus.status().receive_error, BusError::none);
+    EXPECT_EQ(bus.status().reopens, 1U);
     SocketCanBus other("steady0");
     EXPECT_EQ(send(bus, numbered(1)).sent, 1U);
     EXPECT_EQ(await(other, 1), 1U);
@@ -228,6 +326,29 @@ TEST_F(SocketCanBusTest, DeletedInterfaceIsGoneUntilReopened) {
     EXPECT_EQ(await(bus, 5), 5U);
     EXPECT_EQ(bus.status().sent_frames, 3U) << "counters go on";
     EXPECT_EQ(bus.status().send_dropped_frames, 3U);
+}
+
+TEST_F(SocketCanBusTest, EverySocketThatWasReplacedIsClosed) {
+    const auto open_descriptors = [] {
+        const std::filesystem::directory_iterator entries("/proc/self/fd");
+        return std::distance(begin(entries), end(entries));
+    };
+    const auto before = open_descriptors();
+    {
+        SocketCanBus bus("steady0");
+        for (std::uint64_t round = 1; round <= 3; ++round) {
+            run("ip link del steady0");
+            (void)receive(bus);
+            add_interface();
+            bus.tend();
+            bus.tend();
+            (void)receive(bus);
+            EXPECT_EQ(bus.status().reopens, round);
+        }
+        bus.tend();
+        EXPECT_EQ(open_descriptors(), before + 1);
+    }
+    EXPECT_EQ(open_descriptors(), before);
 }
 
 /// A receiver whose buffer holds a few frames, and the sum of what it got.
@@ -252,8 +373,8 @@ class FloodedSocketCanBus : public SocketCanBusTest {
     void SetUp() override {
         SocketCanBusTest::SetUp();
         sender_ = std::make_unique<SocketCanBus>("steady0");
-        small_ = std::make_unique<SocketCanBus>("steady0", SocketCanOptions{.receive_buffer_bytes = 2048});
-        ASSERT_LE(small_->receive_buffer_bytes(), 8192);
+        small_ = std::make_unique<SocketCanBus>("steady0", SocketCanOptions{.receive_buffer_frames = 5});
+        ASSERT_LE(small_->receive_buffer_frames(), 10);
     }
 
     std::unique_ptr<SocketCanBus> sender_;
@@ -274,7 +395,13 @@ TEST_F(FloodedSocketCanBus, EveryFrameLostInTheReceiveBufferIsCounted) {
 TEST_F(FloodedSocketCanBus, CountGoesOnAfterReopening) {
     flood();
     ASSERT_EQ(accounted(), sent_);
-    ASSERT_TRUE(small_->reopen());
+    sender_.reset();
+    run("ip link del steady0");
+    EXPECT_EQ(receive(*small_), 0U);
+    add_interface();
+    small_->tend();
+    (void)receive(*small_);
+    sender_ = std::make_unique<SocketCanBus>("steady0");
     flood();
     EXPECT_EQ(accounted(), sent_);
 }
@@ -322,8 +449,12 @@ TEST_F(SocketCanBusTest, MissingInterfaceIsRejectedWithItsNameAndTheRemedy) {
     EXPECT_THAT(complaint("sixteen-letters-"), HasSubstr("1 to 15 characters"));
 }
 
-TEST_F(SocketCanBusTest, ReceiveBufferHoldsFarMoreThanTheKernelsDefault) {
-    EXPECT_GT(SocketCanBus("steady0").receive_buffer_bytes(), 1'000'000);
+TEST_F(SocketCanBusTest, ReceiveBufferIsReportedAsTheKernelGrantsIt) {
+    EXPECT_EQ(SocketCanBus("steady0").receive_buffer_frames(), 512);
+    EXPECT_EQ(SocketCanBus("steady0", {.receive_buffer_frames = 20'000}).receive_buffer_frames(), 20'000)
+        << "as root beyond net.core.rmem_max";
+    EXPECT_EQ(SocketCanBus("steady0", {.receive_buffer_frames = 555}).receive_buffer_frames(), 555)
+        << "the most that anybody else gets";
 }
 
 }  // namespace
