@@ -11,16 +11,17 @@ namespace steadyboom::drivers {
 namespace {
 
 constexpr std::uint8_t all_nodes = 0;
+constexpr std::int64_t ns_per_ms = 1'000'000;
 
-const NetworkConfig& checked(const NetworkConfig& config) {
-    const double load_share = bus_load(config).worst_case_share;
+DeviceTable checked(DeviceTable table) {
+    const double load_share = bus_load(table).worst_case_share;
     if (load_share > largest_bus_load_share) {
-        throw std::invalid_argument("CAN load at bit_rate_bit_s = " + std::to_string(config.bit_rate_bit_s) +
-                                    " and period_ns = " + std::to_string(config.period_ns) + " is " +
+        throw std::invalid_argument("CAN load at bit_rate_bit_s = " + std::to_string(table.config().bit_rate_bit_s) +
+                                    " and period_ns = " + std::to_string(table.config().period_ns) + " is " +
                                     std::to_string(std::lround(100.0 * load_share)) +
                                     " %: allowed is 70 %, so raise the bit rate or the period");
     }
-    return config;
+    return table;
 }
 
 plant::ValveState valve_state(std::int64_t status_word_raw) noexcept {
@@ -40,12 +41,12 @@ plant::ValveState valve_state(std::int64_t status_word_raw) noexcept {
 
 }  // namespace
 
-CraneNetwork::CraneNetwork(const NetworkConfig& config) : table_(checked(config)) {}
+CraneNetwork::CraneNetwork(const NetworkConfig& config) : table_(checked(DeviceTable(config))) {}
 
 std::vector<CanFilter> CraneNetwork::filters() const {
     std::vector<CanFilter> filters;
     for (const auto& row : table_.messages()) {
-        if (!row.from_controller) {
+        if (row.present && !row.from_controller) {
             filters.push_back({row.id});
         }
     }
@@ -66,9 +67,12 @@ plant::CraneMeasurement CraneNetwork::decode(std::span<const CanFrame> frames, s
             continue;
         }
         const auto& row = table_.row(message);
-        if (row.cycle == Cycle::heartbeat) {
+        if (row.kind == MessageKind::heartbeat) {
             // Every heartbeat counts: a boot-up may be followed by another state within one tick.
             decode_heartbeat(row.device, frames[i].data[0], now_ns);
+            continue;
+        }
+        if (row.kind != MessageKind::pdo) {
             continue;
         }
         auto& newest = newest_frame_[index_of(message)];
@@ -84,7 +88,8 @@ plant::CraneMeasurement CraneNetwork::decode(std::span<const CanFrame> frames, s
         auto& node = status_.nodes[i];
         if (node.state != NodeState::unknown) {
             node.heartbeat_age_ns = now_ns - heartbeat_stamp_ns_[i];
-            node.alive = node.heartbeat_age_ns <= heartbeat_consumer_time_ns;
+            const auto& device = table_.config(static_cast<Device>(i));
+            node.alive = device.heartbeat_ms == 0 || node.heartbeat_age_ns <= device.heartbeat_timeout_ms * ns_per_ms;
         }
     }
     measurement_.stamp_ns = sync_stamp_ns_;
@@ -143,12 +148,12 @@ void CraneNetwork::decode_pdo(Message message, const CanFrame& frame) noexcept {
             decode_sensor(row, frame);
         }
     }
-    if (message == Message::valve_tpdo1) {
+    const auto is_set = [&](Signal signal) { return read_raw(table_.row(signal), frame) != 0; };
+    if (message == message_of(Pdo::valve_status)) {
         measurement_.valve_state = valve_state(read_raw(table_.row(Signal::valve_status_word), frame));
-    } else if (message == Message::safety_tpdo1) {
-        const auto inputs_raw = read_raw(table_.row(Signal::safety_inputs), frame);
-        measurement_.cutoff_open = (inputs_raw & cutoff_bit) != 0;
-        measurement_.emergency_stop_healthy = (inputs_raw & emergency_stop_healthy_bit) != 0;
+    } else if (message == message_of(Pdo::safety_inputs)) {
+        measurement_.cutoff_open = is_set(Signal::cutoff_open);
+        measurement_.emergency_stop_healthy = is_set(Signal::emergency_stop_healthy);
         measurement_.safety_inputs_age_ticks = 0;
     }
 }
@@ -171,11 +176,11 @@ std::span<const CanFrame> CraneNetwork::encode(const GuardedCommand& command, st
     frame_count_ = 0;
     append_housekeeping(now_ns);
 
-    auto safety = table_.blank(Message::safety_rpdo1, now_ns);
-    write_raw(table_.row(Signal::safety_outputs), command.cutoff_energised() ? cutoff_bit : 0, safety);
+    auto safety = table_.blank(message_of(Pdo::safety_outputs), now_ns);
+    write_raw(table_.row(Signal::cutoff_energised), command.cutoff_energised() ? 1 : 0, safety);
     append(safety);
 
-    auto valve = table_.blank(Message::valve_rpdo1, now_ns);
+    auto valve = table_.blank(message_of(Pdo::valve_command), now_ns);
     const auto& set_point = table_.row(Signal::valve_set_point);
     write_raw(table_.row(Signal::valve_control_word), static_cast<std::int64_t>(command.mode()), valve);
     encode_value(set_point, std::clamp(command.opening_m(), set_point.lowest_unit, set_point.highest_unit), valve);
@@ -191,9 +196,10 @@ std::span<const CanFrame> CraneNetwork::encode(const GuardedCommand& command, st
 
 void CraneNetwork::append_housekeeping(std::int64_t now_ns) noexcept {
     if (!booted_ || now_ns >= next_heartbeat_ns_) {
-        const bool on_time = booted_ && now_ns - next_heartbeat_ns_ < heartbeat_interval_ns;
-        next_heartbeat_ns_ = (on_time ? next_heartbeat_ns_ : now_ns) + heartbeat_interval_ns;
-        auto heartbeat = table_.blank(Message::controller_heartbeat, now_ns);
+        const auto interval_ns = table_.row(heartbeat_of(Device::controller)).interval_ns;
+        const bool on_time = booted_ && now_ns - next_heartbeat_ns_ < interval_ns;
+        next_heartbeat_ns_ = (on_time ? next_heartbeat_ns_ : now_ns) + interval_ns;
+        auto heartbeat = table_.blank(heartbeat_of(Device::controller), now_ns);
         heartbeat.data[0] = static_cast<std::uint8_t>(booted_ ? NodeState::operational : NodeState::boot_up);
         booted_ = true;
         append(heartbeat);
@@ -208,7 +214,7 @@ void CraneNetwork::append_housekeeping(std::int64_t now_ns) noexcept {
     const auto waiting = std::ranges::find(needs_start_, true);
     if (waiting != needs_start_.end()) {
         *waiting = false;
-        append_nmt_start(table_.config().node_ids[static_cast<std::size_t>(waiting - needs_start_.begin())], now_ns);
+        append_nmt_start(table_.node_id(static_cast<Device>(waiting - needs_start_.begin())), now_ns);
     }
 }
 

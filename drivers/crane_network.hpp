@@ -16,7 +16,7 @@ namespace steadyboom::drivers {
 /// One device as its heartbeats tell.
 struct NodeStatus {
     NodeState state = NodeState::unknown;  ///< as last heard
-    bool alive = false;                    ///< heard within heartbeat_consumer_time_ns
+    bool alive = false;                    ///< heard within its consumer time, or it has no heartbeat
     std::int64_t heartbeat_age_ns = 0;     ///< since the last heartbeat; 0 before the first
     std::uint32_t boot_ups = 0;
 };

@@ -16,7 +16,7 @@ DeviceNetwork::DeviceNetwork(const NetworkConfig& config) : table_(config) {}
 std::vector<CanFilter> DeviceNetwork::filters() const {
     std::vector<CanFilter> filters;
     for (const auto& row : table_.messages()) {
-        if (row.from_controller && row.cycle != Cycle::heartbeat) {
+        if (row.present && row.from_controller && row.kind != MessageKind::heartbeat) {
             filters.push_back({row.id});
         }
     }
@@ -25,28 +25,22 @@ std::vector<CanFilter> DeviceNetwork::filters() const {
 
 void DeviceNetwork::receive(std::span<const CanFrame> frames, std::int64_t now_ns) noexcept {
     for (const auto& frame : frames) {
-        switch (accepted_message(frame)) {
-            case Message::nmt:
-                obey_nmt(frame);
-                break;
-            case Message::sync:
-                sync_pending_ = true;
-                sync_counter_ = frame.data[0];
-                break;
-            case Message::valve_rpdo1:
-                take_valve_order(frame, now_ns);
-                break;
-            case Message::safety_rpdo1:
-                if (operational(Device::safety_io)) {
-                    order_.cutoff_energised = (read_raw(table_.row(Signal::safety_outputs), frame) & cutoff_bit) != 0;
-                    order_.cutoff_stamp_ns = now_ns;
-                    order_.cutoff_ever = true;
-                } else {
-                    ++status_.not_operational_frames;
-                }
-                break;
-            default:
-                break;
+        const Message message = accepted_message(frame);
+        if (message == Message::nmt) {
+            obey_nmt(frame);
+        } else if (message == Message::sync) {
+            sync_pending_ = true;
+            sync_counter_ = frame.data[0];
+        } else if (message == message_of(Pdo::valve_command)) {
+            take_valve_order(frame, now_ns);
+        } else if (message == message_of(Pdo::safety_outputs)) {
+            if (operational(Device::safety_io)) {
+                order_.cutoff_energised = read_raw(table_.row(Signal::cutoff_energised), frame) != 0;
+                order_.cutoff_stamp_ns = now_ns;
+                order_.cutoff_ever = true;
+            } else {
+                ++status_.not_operational_frames;
+            }
         }
     }
 }
@@ -180,12 +174,11 @@ std::span<const CanFrame> DeviceNetwork::answer_sync(const plant::SensorVector& 
                 write_raw(table_.row(row.status), static_cast<std::int64_t>(sample), frame);
             }
         }
-        if (message.message == Message::valve_tpdo1) {
+        if (message.pdo == Pdo::valve_status) {
             write_raw(table_.row(Signal::valve_status_word), static_cast<std::int64_t>(feedback.state), frame);
-        } else if (message.message == Message::safety_tpdo1) {
-            const int inputs_raw = (feedback.cutoff_open ? cutoff_bit : 0) |
-                                   (feedback.emergency_stop_healthy ? emergency_stop_healthy_bit : 0);
-            write_raw(table_.row(Signal::safety_inputs), inputs_raw, frame);
+        } else if (message.pdo == Pdo::safety_inputs) {
+            write_raw(table_.row(Signal::cutoff_open), feedback.cutoff_open ? 1 : 0, frame);
+            write_raw(table_.row(Signal::emergency_stop_healthy), feedback.emergency_stop_healthy ? 1 : 0, frame);
         }
         answers_[count++] = frame;
     }
@@ -195,16 +188,16 @@ std::span<const CanFrame> DeviceNetwork::answer_sync(const plant::SensorVector& 
 std::span<const CanFrame> DeviceNetwork::housekeeping(std::int64_t now_ns) noexcept {
     std::size_t count = 0;
     for (const auto& message : table_.messages()) {
-        if (message.cycle != Cycle::heartbeat || message.from_controller) {
+        if (message.kind != MessageKind::heartbeat || message.from_controller) {
             continue;
         }
         auto& node = nodes_[index_of(message.device)];
         const bool booting = node.state == NodeState::boot_up;
-        if (!booting && now_ns < node.next_heartbeat_ns) {
+        if (!booting && (message.interval_ns == 0 || now_ns < node.next_heartbeat_ns)) {
             continue;
         }
-        const bool on_time = !booting && now_ns - node.next_heartbeat_ns < heartbeat_interval_ns;
-        node.next_heartbeat_ns = (on_time ? node.next_heartbeat_ns : now_ns) + heartbeat_interval_ns;
+        const bool on_time = !booting && now_ns - node.next_heartbeat_ns < message.interval_ns;
+        node.next_heartbeat_ns = (on_time ? node.next_heartbeat_ns : now_ns) + message.interval_ns;
         auto frame = table_.blank(message.message, now_ns);
         frame.data[0] = static_cast<std::uint8_t>(node.state);
         if (booting) {

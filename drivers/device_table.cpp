@@ -1,103 +1,124 @@
 #include "drivers/device_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <sstream>
 #include <stdexcept>
-#include <string>
+#include <vector>
+
+#include "drivers/emcy.hpp"
+#include "drivers/sdo_format.hpp"
 
 namespace steadyboom::drivers {
 namespace {
 
-constexpr std::uint16_t nmt_code = 0x000;
-constexpr std::uint16_t sync_code = 0x080;
-constexpr std::uint16_t tpdo1_code = 0x180;
-constexpr std::uint16_t rpdo1_code = 0x200;
-constexpr std::uint16_t tpdo2_code = 0x280;
-constexpr std::uint16_t heartbeat_code = 0x700;
+constexpr std::uint32_t nmt_id = 0x000;
+constexpr std::uint32_t sync_id = 0x080;
+constexpr std::uint32_t tpdo1_code = 0x180;
+constexpr std::uint32_t rpdo1_code = 0x200;
+constexpr std::uint32_t next_pdo_code = 0x100;  ///< from PDO n to PDO n + 1
+constexpr std::uint32_t heartbeat_code = 0x700;
 
-constexpr double rad_per_deg = std::numbers::pi / 180.0;
-constexpr double rad_per_millidegree = rad_per_deg / 1000.0;
+constexpr std::int64_t ns_per_ms = 1'000'000;
 
-std::array<MessageRow, message_count> message_rows() {
-    using enum Message;
-    constexpr auto tick = Cycle::every_tick;
-    constexpr auto sampled = Cycle::on_sync;
-    constexpr auto beat = Cycle::heartbeat;
-    return {{
-        {nmt, "nmt", Device::controller, nmt_code, false, 2, Cycle::on_demand, true},
-        {sync, "sync", Device::controller, sync_code, false, 1, tick, true},
-        {strain_tpdo1, "strain_tpdo1", Device::strain_link, tpdo1_code, true, 6, sampled, false},
-        {boom_angle_tpdo1, "boom_angle_tpdo1", Device::boom_inclinometer, tpdo1_code, true, 4, sampled, false},
-        {load_pin_tpdo1, "load_pin_tpdo1", Device::load_pin, tpdo1_code, true, 5, sampled, false},
-        {line_angle_tpdo1, "line_angle_tpdo1", Device::hook_inclinometer, tpdo1_code, true, 4, sampled, false},
-        {drum_tpdo1, "drum_tpdo1", Device::drum_encoder, tpdo1_code, true, 4, sampled, false},
-        {valve_tpdo1, "valve_tpdo1", Device::servo_valve, tpdo1_code, true, 4, sampled, false},
-        {valve_tpdo2, "valve_tpdo2", Device::servo_valve, tpdo2_code, true, 6, sampled, false},
-        {safety_tpdo1, "safety_tpdo1", Device::safety_io, tpdo1_code, true, 1, sampled, false},
-        {safety_rpdo1, "safety_rpdo1", Device::safety_io, rpdo1_code, true, 1, tick, true},
-        {valve_rpdo1, "valve_rpdo1", Device::servo_valve, rpdo1_code, true, 4, tick, true},
-        {controller_heartbeat, "controller_heartbeat", Device::controller, heartbeat_code, true, 1, beat, true},
-        {strain_heartbeat, "strain_heartbeat", Device::strain_link, heartbeat_code, true, 1, beat, false},
-        {boom_angle_heartbeat, "boom_angle_heartbeat", Device::boom_inclinometer, heartbeat_code, true, 1, beat, false},
-        {load_pin_heartbeat, "load_pin_heartbeat", Device::load_pin, heartbeat_code, true, 1, beat, false},
-        {line_angle_heartbeat, "line_angle_heartbeat", Device::hook_inclinometer, heartbeat_code, true, 1, beat, false},
-        {drum_heartbeat, "drum_heartbeat", Device::drum_encoder, heartbeat_code, true, 1, beat, false},
-        {valve_heartbeat, "valve_heartbeat", Device::servo_valve, heartbeat_code, true, 1, beat, false},
-        {safety_heartbeat, "safety_heartbeat", Device::safety_io, heartbeat_code, true, 1, beat, false},
-    }};
+/// What a signal feeds, and which status byte speaks for it.
+struct Meaning {
+    plant::Sensor sensor = plant::sensor_count;
+    Signal status = Signal::none;
+};
+
+Meaning meaning_of(Signal signal) noexcept {
+    switch (signal) {
+        case Signal::strain_lower:
+            return {plant::strain_lower_microstrain, Signal::strain_lower_status};
+        case Signal::strain_upper:
+            return {plant::strain_upper_microstrain, Signal::strain_upper_status};
+        case Signal::boom_angle:
+            return {plant::boom_angle_rad};
+        case Signal::line_tension:
+            return {plant::line_tension_N, Signal::line_tension_status};
+        case Signal::line_angle:
+            return {plant::line_angle_rad};
+        case Signal::line_length:
+            return {plant::line_length_m};
+        case Signal::spool:
+            return {plant::spool_m};
+        case Signal::piston:
+            return {plant::piston_m};
+        case Signal::load_pressure:
+            return {plant::load_pressure_Pa};
+        default:
+            return {};
+    }
 }
 
-// Limits are what a sound device on any crane can say, not what this crane should do: a slack line's load pin reads a
-// little below zero, a spool overshoots its travel.
-std::array<SignalRow, signal_count> signal_rows(double travel_m) {
-    using enum Signal;
-    using enum RawType;
-    using M = Message;
-    constexpr auto no_sensor = plant::sensor_count;
-    const double spool_m_per_raw = travel_m / static_cast<double>(valve_full_scale_raw);
-    return {{
-        {strain_lower, "strain_lower", M::strain_tpdo1, 0x7130, 1, i16, 0, "microstrain", 0.1, -3200.0, 3200.0,
-         plant::strain_lower_microstrain, strain_lower_status},
-        {strain_upper, "strain_upper", M::strain_tpdo1, 0x7130, 2, i16, 2, "microstrain", 0.1, -3200.0, 3200.0,
-         plant::strain_upper_microstrain, strain_upper_status},
-        {strain_lower_status, "strain_lower_status", M::strain_tpdo1, 0x6150, 1, u8, 4, "", 1.0, 0.0, 255.0, no_sensor,
-         none},
-        {strain_upper_status, "strain_upper_status", M::strain_tpdo1, 0x6150, 2, u8, 5, "", 1.0, 0.0, 255.0, no_sensor,
-         none},
-        {boom_angle, "boom_angle", M::boom_angle_tpdo1, 0x6110, 0, i32, 0, "rad", rad_per_millidegree,
-         -90.0 * rad_per_deg, 120.0 * rad_per_deg, plant::boom_angle_rad, none},
-        {line_tension, "line_tension", M::load_pin_tpdo1, 0x9130, 1, i32, 0, "N", 1.0, -1.0e5, 2.0e6,
-         plant::line_tension_N, line_tension_status},
-        {line_tension_status, "line_tension_status", M::load_pin_tpdo1, 0x6150, 1, u8, 4, "", 1.0, 0.0, 255.0,
-         no_sensor, none},
-        {line_angle, "line_angle", M::line_angle_tpdo1, 0x6110, 0, i32, 0, "rad", rad_per_millidegree,
-         -90.0 * rad_per_deg, 90.0 * rad_per_deg, plant::line_angle_rad, none},
-        {line_length, "line_length", M::drum_tpdo1, 0x6004, 0, u32, 0, "m", 1.0e-4, 0.0, 1000.0, plant::line_length_m,
-         none},
-        {valve_status_word, "valve_status_word", M::valve_tpdo1, 0x6041, 0, u16, 0, "", 1.0, 0.0, 65535.0, no_sensor,
-         none},
-        {spool, "spool", M::valve_tpdo1, 0x6301, 1, i16, 2, "m", spool_m_per_raw, -1.25 * travel_m, 1.25 * travel_m,
-         plant::spool_m, none},
-        {piston, "piston", M::valve_tpdo2, 0x2000, 1, i32, 0, "m", 1.0e-6, -1.0, 1.0, plant::piston_m, none},
-        {load_pressure, "load_pressure", M::valve_tpdo2, 0x2000, 2, u16, 4, "Pa", 1.0e4, 0.0, 6.0e7,
-         plant::load_pressure_Pa, none},
-        {safety_inputs, "safety_inputs", M::safety_tpdo1, 0x6000, 1, u8, 0, "", 1.0, 0.0, 255.0, no_sensor, none},
-        {safety_outputs, "safety_outputs", M::safety_rpdo1, 0x6200, 1, u8, 0, "", 1.0, 0.0, 255.0, no_sensor, none},
-        {valve_control_word, "valve_control_word", M::valve_rpdo1, 0x6040, 0, u16, 0, "", 1.0, 0.0, 65535.0, no_sensor,
-         none},
-        {valve_set_point, "valve_set_point", M::valve_rpdo1, 0x6300, 1, i16, 2, "m", spool_m_per_raw, -travel_m,
-         travel_m, no_sensor, none},
-    }};
+struct SiUnit {
+    std::string_view name;
+    double per_unit;
+};
+
+SiUnit si_unit(Unit unit, double spool_travel_m) noexcept {
+    switch (unit) {
+        case Unit::none:
+            return {"", 1.0};
+        case Unit::microstrain:
+            return {"microstrain", 1.0};
+        case Unit::deg:
+            return {"rad", std::numbers::pi / 180.0};
+        case Unit::rad:
+            return {"rad", 1.0};
+        case Unit::N:
+            return {"N", 1.0};
+        case Unit::kN:
+            return {"N", 1.0e3};
+        case Unit::m:
+            return {"m", 1.0};
+        case Unit::mm:
+            return {"m", 1.0e-3};
+        case Unit::um:
+            return {"m", 1.0e-6};
+        case Unit::percent_of_travel:
+            return {"m", 0.01 * spool_travel_m};
+        case Unit::Pa:
+            return {"Pa", 1.0};
+        case Unit::bar:
+            return {"Pa", 1.0e5};
+        case Unit::MPa:
+            return {"Pa", 1.0e6};
+    }
+    return {"", 1.0};
 }
 
-void check(const NetworkConfig& config) {
+template <typename Value>
+[[noreturn]] void refuse(const std::string& key, Value value, const std::string& allowed) {
+    std::ostringstream text;
+    if constexpr (sizeof(Value) == 1) {
+        text << key << " = " << static_cast<int>(value);
+    } else {
+        text << key << " = " << value;
+    }
+    text << ": " << allowed;
+    throw std::invalid_argument(text.str());
+}
+
+std::string key_of(Device device, std::string_view key) {
+    return "device." + std::string(name_of(device)) + "." + std::string(key);
+}
+std::string key_of(Pdo pdo, std::string_view key) {
+    return "pdo." + std::string(name_of(pdo)) + "." + std::string(key);
+}
+std::string key_of(Signal signal, std::string_view key) {
+    return "signal." + std::string(name_of(signal)) + "." + std::string(key);
+}
+
+void check_bus(const NetworkConfig& config) {
     if (!std::isfinite(config.spool_travel_m) || config.spool_travel_m <= 0.0 || config.spool_travel_m > 1.0) {
-        throw std::invalid_argument("spool_travel_m = " + std::to_string(config.spool_travel_m) +
-                                    ": allowed is above 0 up to 1");
+        refuse("spool_travel_m", config.spool_travel_m, "allowed is above 0 up to 1");
     }
     if (config.period_ns < 100'000 || config.period_ns > 1'000'000'000) {
-        throw std::invalid_argument("period_ns = " + std::to_string(config.period_ns) +
-                                    ": allowed is 100000 to 1000000000");
+        refuse("period_ns", config.period_ns, "allowed is 100000 to 1000000000");
     }
     switch (config.bit_rate_bit_s) {
         case 125'000:
@@ -106,63 +127,386 @@ void check(const NetworkConfig& config) {
         case 1'000'000:
             break;
         default:
-            throw std::invalid_argument("bit_rate_bit_s = " + std::to_string(config.bit_rate_bit_s) +
-                                        ": allowed is 125000, 250000, 500000 or 1000000");
+            refuse("bit_rate_bit_s", config.bit_rate_bit_s, "allowed is 125000, 250000, 500000 or 1000000");
     }
-    std::array<bool, 128> taken{};
+}
+
+void check_devices(const NetworkConfig& config) {
+    std::array<std::optional<Device>, 128> taken{};
     for (std::size_t i = 0; i < device_count; ++i) {
-        const auto node = config.node_ids[i];
-        const auto complaint =
-            "node id of " + std::string(name_of(static_cast<Device>(i))) + " = " + std::to_string(node) + ": ";
-        if (node < 1 || node > 127) {
-            throw std::invalid_argument(complaint + "allowed is 1 to 127");
+        const auto device = static_cast<Device>(i);
+        const auto& d = config[device];
+        if (d.node_id < 1 || d.node_id > 127) {
+            refuse(key_of(device, "node_id"), d.node_id, "allowed is 1 to 127");
         }
-        if (taken[node]) {
-            throw std::invalid_argument(complaint + "another device has it already");
+        if (taken[d.node_id]) {
+            refuse(key_of(device, "node_id"), d.node_id,
+                   std::string(name_of(*taken[d.node_id])) + " has this node id; allowed is one that no other has");
         }
-        taken[node] = true;
+        taken[d.node_id] = device;
+        if (d.heartbeat_ms < 0 || d.heartbeat_ms > 65'535) {
+            refuse(key_of(device, "heartbeat_ms"), d.heartbeat_ms, "allowed is 0 to 65535");
+        }
+        const bool timeout_fits =
+            d.heartbeat_ms == 0 ? d.heartbeat_timeout_ms == 0 : d.heartbeat_timeout_ms > d.heartbeat_ms;
+        if (!timeout_fits && device != Device::controller) {
+            refuse(key_of(device, "heartbeat_timeout_ms"), d.heartbeat_timeout_ms,
+                   d.heartbeat_ms == 0 ? "allowed is 0, as there is no heartbeat to wait for"
+                                       : "allowed is more than heartbeat_ms");
+        }
     }
+}
+
+void check_pdos(const NetworkConfig& config) {
+    for (std::size_t i = 0; i < pdo_count; ++i) {
+        const auto pdo = static_cast<Pdo>(i);
+        const auto& p = config[pdo];
+        if (p.number < 1 || p.number > 4) {
+            refuse(key_of(pdo, "number"), p.number, "allowed is 1 to 4");
+        }
+        const bool timer = p.transmission == Transmission::event && !from_controller(pdo);
+        const bool timer_fits = timer ? p.event_ms >= 1 && p.event_ms * ns_per_ms <= config.period_ns : p.event_ms == 0;
+        if (!timer_fits) {
+            refuse(key_of(pdo, "event_ms"), p.event_ms,
+                   timer ? "allowed is at least 1 and at most one tick, so that each tick has a sample"
+                         : "allowed is 0, as this PDO is not sent by a timer");
+        }
+        for (std::size_t j = 0; j < i; ++j) {
+            if (p.data_id == config.pdos[j].data_id) {
+                refuse(key_of(pdo, "data_id"), p.data_id,
+                       "pdo." + std::string(name_of(static_cast<Pdo>(j))) +
+                           " has this data id; allowed is one that no other has");
+            }
+        }
+    }
+}
+
+/// Codes that devices use to say that they have no value.
+std::vector<std::int64_t> no_value_codes(RawType type) {
+    switch (type) {
+        case RawType::u16:
+            return {0xFFFE, 0xFFFF};
+        case RawType::i16:
+            return {-0x8000, 0x7FFF};
+        case RawType::u32:
+            return {0xFFFF'FFFE, 0xFFFF'FFFF};
+        case RawType::i32:
+            return {-0x8000'0000LL, 0x7FFF'FFFF};
+        case RawType::u8:
+            return {0xFE, 0xFF};
+        case RawType::bit:
+            break;
+    }
+    return {};
+}
+
+void check_signal(Signal signal, const SignalConfig& s) {
+    if (!measures(s.unit, signal)) {
+        refuse(key_of(signal, "unit"), name_of(s.unit), "allowed is a unit of what this signal measures");
+    }
+    if (!std::isfinite(s.scale) || s.scale == 0.0) {
+        refuse(key_of(signal, "scale"), s.scale, "allowed is any finite number but 0");
+    }
+    if (!std::isfinite(s.offset)) {
+        refuse(key_of(signal, "offset"), s.offset, "allowed is any finite number");
+    }
+    if (!std::isfinite(s.lowest) || !std::isfinite(s.highest) || s.lowest >= s.highest) {
+        refuse(key_of(signal, "lowest"), s.lowest, "allowed is a finite number below highest");
+    }
+    if (!std::isfinite(s.fastest_1_s) || s.fastest_1_s < 0.0) {
+        refuse(key_of(signal, "fastest_1_s"), s.fastest_1_s,
+               "allowed is a finite number of at least 0; 0: not checked");
+    }
+    if (s.bit > 7 || (s.bit != 0 && s.type != RawType::bit)) {
+        refuse(key_of(signal, "bit"), s.bit, "allowed is 0 to 7 for type \"bit\", else 0");
+    }
+    if (8 * s.byte_offset + size_bits(s.type) > 8 * longest_frame_bytes) {
+        refuse(key_of(signal, "byte_offset"), s.byte_offset, "the value would end beyond the frame's eighth byte");
+    }
+    const bool needs_bit =
+        signal == Signal::cutoff_open || signal == Signal::emergency_stop_healthy || signal == Signal::cutoff_energised;
+    if (needs_bit != (s.type == RawType::bit)) {
+        refuse(key_of(signal, "type"), static_cast<int>(s.type), needs_bit ? "allowed is a bit" : "a bit is too small");
+    }
+    const bool is_word = signal == Signal::valve_status_word || signal == Signal::valve_control_word;
+    if (is_word && s.type != RawType::u16) {
+        refuse(key_of(signal, "type"), static_cast<int>(s.type), "allowed is u16 (CiA 408)");
+    }
+    if (meaning_of(signal).sensor == plant::sensor_count) {
+        return;
+    }
+    for (const auto raw : no_value_codes(s.type)) {
+        const double value = static_cast<double>(raw) * s.scale + s.offset;
+        const double half_step = 0.5 * std::abs(s.scale);
+        if (value >= s.lowest - half_step && value <= s.highest + half_step) {
+            const bool at_the_top = (raw > 0) == (s.scale > 0.0);
+            refuse(key_of(signal, at_the_top ? "highest" : "lowest"), at_the_top ? s.highest : s.lowest,
+                   "the raw code " + std::to_string(raw) +
+                       ", which devices send for \"no value\", would lie within the limits");
+        }
+    }
+}
+
+void check_signals(const NetworkConfig& config) {
+    std::array<std::array<std::optional<Signal>, 64>, pdo_count> owner{};
+    for (std::size_t i = 0; i < signal_count; ++i) {
+        const auto signal = static_cast<Signal>(i);
+        const auto& s = config[signal];
+        if (!s.mapped) {
+            const bool optional = meaning_of(signal).sensor != plant::sensor_count ||
+                                  signal == Signal::strain_lower_status || signal == Signal::strain_upper_status ||
+                                  signal == Signal::line_tension_status;
+            if (!optional) {
+                refuse(key_of(signal, "mapped"), "false", "the controller cannot do without this signal");
+            }
+            continue;
+        }
+        check_signal(signal, s);
+        for (std::size_t bit = 8U * s.byte_offset + s.bit; bit < 8U * s.byte_offset + s.bit + size_bits(s.type);
+             ++bit) {
+            auto& other = owner[index_of(pdo_of(signal))][bit];
+            if (other) {
+                refuse(key_of(signal, "byte_offset"), s.byte_offset,
+                       std::string(name_of(*other)) + " lies there in the same PDO");
+            }
+            other = signal;
+        }
+    }
+}
+
+/// Bytes of the values in this PDO.
+std::uint8_t values_bytes(const NetworkConfig& config, Pdo pdo) {
+    // The twin repeats the command.
+    const Pdo mapped = pdo == Pdo::valve_twin ? Pdo::valve_command : pdo;
+    std::size_t end_bytes = 0;
+    for (std::size_t i = 0; i < signal_count; ++i) {
+        const auto& s = config.signals[i];
+        if (s.mapped && pdo_of(static_cast<Signal>(i)) == mapped) {
+            end_bytes = std::max<std::size_t>(end_bytes, s.byte_offset + (size_bits(s.type) + 7U) / 8U);
+        }
+    }
+    const auto& p = config[mapped];
+    if (p.length_bytes != 0) {
+        if (p.length_bytes < end_bytes || p.length_bytes > longest_frame_bytes) {
+            refuse(key_of(mapped, "length_bytes"), p.length_bytes,
+                   "allowed is " + std::to_string(end_bytes) + " (where its last signal ends) to 8, or 0");
+        }
+        end_bytes = p.length_bytes;
+    }
+    const bool is_protected = config[device_of(pdo)].protection == Protection::e2e;
+    if (is_protected && end_bytes + protection_bytes > longest_frame_bytes) {
+        refuse(key_of(device_of(pdo), "protection"), "e2e",
+               "counter and CRC need two bytes, and " + std::string(name_of(pdo)) + " has " +
+                   std::to_string(end_bytes) + " of 8");
+    }
+    return static_cast<std::uint8_t>(end_bytes);
+}
+
+const NetworkConfig& checked(const NetworkConfig& config) {
+    check_bus(config);
+    check_devices(config);
+    check_pdos(config);
+    check_signals(config);
+    return config;
+}
+
+MessageRow pdo_row(const NetworkConfig& config, Pdo pdo) {
+    const Device device = device_of(pdo);
+    const auto& p = config[pdo];
+    const bool out = from_controller(pdo);
+    const bool is_protected = config[device].protection == Protection::e2e;
+    MessageRow row;
+    row.message = message_of(pdo);
+    row.name = std::string(name_of(device)) + (out ? "_rpdo" : "_tpdo") + std::to_string(p.number);
+    row.present = pdo != Pdo::valve_twin || is_protected;
+    row.kind = MessageKind::pdo;
+    row.device = device;
+    row.pdo = pdo;
+    row.id = (out ? rpdo1_code : tpdo1_code) + (p.number - 1U) * next_pdo_code + config[device].node_id;
+    row.length_bytes =
+        static_cast<std::uint8_t>(values_bytes(config, pdo) + (is_protected ? protection_bytes : std::uint8_t{0}));
+    row.from_controller = out;
+    row.cycle = out ? Cycle::every_tick : p.transmission == Transmission::sync ? Cycle::on_sync : Cycle::timer;
+    row.interval_ns = row.cycle == Cycle::timer ? p.event_ms * ns_per_ms : 0;
+    row.protection = config[device].protection;
+    row.data_id = p.data_id;
+    return row;
+}
+
+MessageRow service_row(const NetworkConfig& config, MessageKind kind, Device device) {
+    const bool is_controller = device == Device::controller;
+    const auto& d = config[device];
+    MessageRow row;
+    row.kind = kind;
+    row.device = device;
+    const std::string name(name_of(device));
+    switch (kind) {
+        case MessageKind::heartbeat:
+            row.message = heartbeat_of(device);
+            row.name = name + "_heartbeat";
+            // A device without heartbeat still sends its boot-up message.
+            row.id = heartbeat_code + d.node_id;
+            row.length_bytes = 1;
+            row.cycle = d.heartbeat_ms > 0 ? Cycle::timer : Cycle::on_demand;
+            row.interval_ns = d.heartbeat_ms * ns_per_ms;
+            row.from_controller = is_controller;
+            break;
+        case MessageKind::emergency:
+            row.message = emergency_of(device);
+            row.name = name + "_emergency";
+            row.id = emergency_code + d.node_id;
+            row.length_bytes = 8;
+            row.present = !is_controller;
+            break;
+        case MessageKind::sdo_request:
+            row.message = sdo_request_to(device);
+            row.name = name + "_sdo_request";
+            row.id = sdo_request_code + d.node_id;
+            row.length_bytes = 8;
+            row.from_controller = true;
+            row.present = !is_controller;
+            break;
+        default:
+            row.message = sdo_answer_of(device);
+            row.name = name + "_sdo_answer";
+            row.id = sdo_response_code + d.node_id;
+            row.length_bytes = 8;
+            row.present = !is_controller;
+            break;
+    }
+    return row;
+}
+
+std::array<MessageRow, message_count> message_rows(const NetworkConfig& config) {
+    std::array<MessageRow, message_count> rows;
+    const auto put = [&rows](MessageRow row) {
+        const auto i = index_of(row.message);
+        rows[i] = std::move(row);
+    };
+    MessageRow nmt;
+    nmt.message = Message::nmt;
+    nmt.name = "nmt";
+    nmt.id = nmt_id;
+    nmt.length_bytes = 2;
+    nmt.from_controller = true;
+    put(nmt);
+    MessageRow sync = nmt;
+    sync.message = Message::sync;
+    sync.kind = MessageKind::sync;
+    sync.name = "sync";
+    sync.id = sync_id;
+    sync.length_bytes = 1;
+    sync.cycle = Cycle::every_tick;
+    put(sync);
+    for (std::size_t i = 0; i < pdo_count; ++i) {
+        put(pdo_row(config, static_cast<Pdo>(i)));
+    }
+    for (std::size_t i = 0; i < device_count; ++i) {
+        for (const auto kind :
+             {MessageKind::heartbeat, MessageKind::emergency, MessageKind::sdo_request, MessageKind::sdo_answer}) {
+            put(service_row(config, kind, static_cast<Device>(i)));
+        }
+    }
+    return rows;
+}
+
+SignalRow signal_row(const NetworkConfig& config, Signal signal) {
+    const auto& s = config[signal];
+    const auto si = si_unit(s.unit, config.spool_travel_m);
+    const auto meaning = meaning_of(signal);
+    SignalRow row;
+    row.signal = signal;
+    row.name = name_of(signal);
+    row.present = s.mapped;
+    row.message = message_of(pdo_of(signal));
+    row.object = s.object;
+    row.subindex = s.subindex;
+    row.type = s.type;
+    row.byte_offset = s.byte_offset;
+    row.bit = s.bit;
+    row.byte_order = s.byte_order;
+    row.unit = si.name;
+    row.scale_unit = s.scale * si.per_unit;
+    row.offset_unit = s.offset * si.per_unit;
+    row.lowest_unit = s.lowest * si.per_unit;
+    row.highest_unit = s.highest * si.per_unit;
+    row.largest_step_unit = s.fastest_1_s * si.per_unit * 1.0e-9 * static_cast<double>(config.period_ns);
+    row.sensor = s.mapped ? meaning.sensor : plant::sensor_count;
+    row.status = meaning.status != Signal::none && config[meaning.status].mapped ? meaning.status : Signal::none;
+    return row;
+}
+
+std::array<SignalRow, signal_count> signal_rows(const NetworkConfig& config) {
+    std::array<SignalRow, signal_count> rows;
+    for (std::size_t i = 0; i < signal_count; ++i) {
+        rows[i] = signal_row(config, static_cast<Signal>(i));
+    }
+    return rows;
 }
 
 }  // namespace
 
 DeviceTable::DeviceTable(const NetworkConfig& config)
-    : config_((check(config), config)), messages_(message_rows()), signals_(signal_rows(config.spool_travel_m)) {
+    : config_(checked(config)), messages_(message_rows(config)), signals_(signal_rows(config)) {
     by_id_.fill(Message::none);
-    for (auto& row : messages_) {
-        row.id = row.function_code + (row.node_in_id ? node_id(row.device) : 0U);
-        by_id_[row.id] = row.message;
+    for (const auto& row : messages_) {
+        if (!row.present || row.extended) {
+            continue;
+        }
+        auto& entry = by_id_[row.id];
+        if (entry != Message::none) {
+            std::ostringstream text;
+            text << row.name << " and " << this->row(entry).name << " would both be identifier " << std::hex << "0x"
+                 << row.id << ": give one of their PDOs another number";
+            throw std::invalid_argument(text.str());
+        }
+        entry = row.message;
     }
+}
+
+Message DeviceTable::message_with(std::uint32_t id, bool extended) const noexcept {
+    if (!extended) {
+        return id < standard_id_count ? by_id_[id] : Message::none;
+    }
+    for (const auto& row : messages_) {
+        if (row.present && row.extended && row.id == id) {
+            return row.message;
+        }
+    }
+    return Message::none;
 }
 
 CanFrame DeviceTable::blank(Message message, std::int64_t now_ns) const noexcept {
     CanFrame frame;
     frame.id = row(message).id;
+    frame.extended = row(message).extended;
     frame.length = row(message).length_bytes;
     frame.stamp_ns = now_ns;
     return frame;
 }
 
-std::string_view name_of(Device device) noexcept {
-    constexpr std::array<std::string_view, device_count> names = {
-        "controller",        "strain_link",  "boom_inclinometer", "load_pin",
-        "hook_inclinometer", "drum_encoder", "servo_valve",       "safety_io",
-    };
-    return index_of(device) < device_count ? names[index_of(device)] : "unknown";
+std::size_t DeviceTable::most_frames_a_tick() const noexcept {
+    constexpr std::size_t management = 1;
+    return management + static_cast<std::size_t>(std::ranges::count_if(messages_, [](const MessageRow& row) {
+               return row.present && row.from_controller && row.cycle == Cycle::every_tick;
+           }));
 }
 
-BusLoad bus_load(const NetworkConfig& config) {
-    const DeviceTable table(config);
+BusLoad bus_load(const DeviceTable& table) noexcept {
     BusLoad load;
+    const auto& config = table.config();
+    const auto share = [&config](std::uint32_t bits, std::int64_t interval_ns) {
+        return bits * (1.0e9 / static_cast<double>(interval_ns)) / config.bit_rate_bit_s;
+    };
     for (const auto& row : table.messages()) {
-        if (row.cycle == Cycle::on_demand) {
+        if (!row.present || row.cycle == Cycle::on_demand) {
             continue;
         }
-        const auto interval_ns = row.cycle == Cycle::heartbeat ? heartbeat_interval_ns : config.period_ns;
-        const double share_per_bit = 1.0e9 / static_cast<double>(interval_ns) / config.bit_rate_bit_s;
-        load.nominal_share += nominal_frame_bits(row.length_bytes) * share_per_bit;
-        load.worst_case_share += worst_case_frame_bits(row.length_bytes) * share_per_bit;
+        const auto interval_ns = row.cycle == Cycle::timer ? row.interval_ns : config.period_ns;
+        load.nominal_share += share(nominal_frame_bits(row.length_bytes, row.extended), interval_ns);
+        load.worst_case_share += share(worst_case_frame_bits(row.length_bytes, row.extended), interval_ns);
     }
+    load.worst_case_share += share(2U * worst_case_frame_bits(longest_frame_bytes), config.period_ns);
     return load;
 }
 

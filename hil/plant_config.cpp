@@ -1,5 +1,7 @@
 #include "hil/plant_config.hpp"
 
+#include <cmath>
+
 #include "runtime/controller_config.hpp"
 
 namespace steadyboom::hil {
@@ -8,11 +10,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void declare_plant_config(runtime::TomlSchema& schema, PlantConfig& config, std::string& case_file) {
+void declare_plant_config(runtime::TomlSchema& schema, PlantConfig& config, std::string& case_file,
+                          std::string& network_file) {
     schema.text(
         "case_file", case_file,
         [](const std::string& text) { return !text.empty() && text.find('\0') == std::string::npos; },
         "the path of a case file, relative to this file");
+    runtime::declare_network_file(schema, network_file);
     schema.section("bus");
     runtime::declare_bus(schema, config.interface, config.bit_rate_bit_s);
     schema.section("loop");
@@ -33,8 +37,9 @@ void declare_plant_config(runtime::TomlSchema& schema, PlantConfig& config, std:
 PlantConfig load_plant_config(const fs::path& path) {
     PlantConfig config;
     std::string case_file;
+    std::string network_file;
     runtime::TomlSchema schema;
-    declare_plant_config(schema, config, case_file);
+    declare_plant_config(schema, config, case_file, network_file);
     schema.read_file(path);
 
     std::error_code error;
@@ -42,14 +47,20 @@ PlantConfig load_plant_config(const fs::path& path) {
     schema.require("case_file", fs::is_regular_file(config.case_file, error),
                    "name a case file; there is none at " + config.case_file.string());
     config.crane_case = load_case(config.case_file.string());
+    config.network = runtime::load_network(schema, path, network_file,
+                                           {.spool_travel_m = config.crane_case.crane.actuator.spool_travel_m,
+                                            .period_ns = std::llround(1e9 / config.rate_Hz),
+                                            .bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s)});
+    config.network_file = network_file;
     return config;
 }
 
 std::string to_toml(const PlantConfig& config) {
     PlantConfig copy = config;
     std::string case_file = config.case_file.string();
+    std::string network_file = config.network_file.string();
     runtime::TomlSchema schema;
-    declare_plant_config(schema, copy, case_file);
+    declare_plant_config(schema, copy, case_file, network_file);
     return schema.write();
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "drivers/network_config.hpp"
 #include "hil/case_file.hpp"
 
 namespace steadyboom::hil {
@@ -13,6 +14,9 @@ namespace steadyboom::hil {
 struct PlantConfig {
     std::filesystem::path case_file;  ///< absolute
     Case crane_case;                  ///< what that file holds: the true crane
+
+    std::filesystem::path network_file;  ///< absolute, or empty: the devices of the virtual crane
+    drivers::NetworkConfig network;      ///< what that file, the bus, the tick and the crane make of it
 
     std::string interface;         ///< SocketCAN
     int bit_rate_bit_s = 500'000;  ///< of the interface

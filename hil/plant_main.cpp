@@ -47,9 +47,7 @@ hil::PlantRecord record_of(const hil::TruthSample& truth, std::uint64_t step, st
 
 int stand_in_for_the_crane(const hil::PlantConfig& config) {
     hil::VirtualCrane crane({.crane = config.crane_case.crane,
-                             .network = {.spool_travel_m = config.crane_case.crane.actuator.spool_travel_m,
-                                         .period_ns = std::llround(1e9 / config.rate_Hz),
-                                         .bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s)},
+                             .network = config.network,
                              .step_s = 1e-9 * static_cast<double>(step_ns),
                              .seed = static_cast<std::uint64_t>(config.seed)});
     drivers::SocketCanBus bus(config.interface, {.filters = crane.network().filters()});

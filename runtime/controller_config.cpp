@@ -5,6 +5,8 @@
 #include <cmath>
 #include <system_error>
 
+#include "runtime/network_file.hpp"
+
 namespace steadyboom::runtime {
 
 namespace {
@@ -33,11 +35,13 @@ bool is_absolute_file_path(const std::string& text, std::size_t longest) {
            text.find('\0') == std::string::npos;
 }
 
-void declare_controller_config(TomlSchema& schema, ControllerConfig& config, std::string& crane_file) {
+void declare_controller_config(TomlSchema& schema, ControllerConfig& config, std::string& crane_file,
+                               std::string& network_file) {
     schema.text(
         "crane_file", crane_file,
         [](const std::string& text) { return !text.empty() && text.find('\0') == std::string::npos; },
         "the path of a crane file, relative to this file");
+    declare_network_file(schema, network_file);
     schema.word<controllers::LawKind>("law", config.law, law_words);
 
     schema.section("bus");
@@ -78,6 +82,12 @@ void declare_bus(TomlSchema& schema, std::string& interface, int& bit_rate_bit_s
         "be 125000, 250000, 500000 or 1000000 bit/s");
 }
 
+void declare_network_file(TomlSchema& schema, std::string& network_file) {
+    schema.text(
+        "network_file", network_file, [](const std::string& text) { return text.find('\0') == std::string::npos; },
+        "the path of a network file, relative to this file, or \"\"");
+}
+
 void declare_rate(TomlSchema& schema, double& rate_Hz) {
     schema.number("rate_Hz", rate_Hz, closed(50, 2000), "Hz");
 }
@@ -92,11 +102,25 @@ std::int64_t ControllerConfig::period_ns() const noexcept {
     return std::llround(1e9 / rate_Hz);
 }
 
+drivers::NetworkConfig load_network(const TomlSchema& schema, const fs::path& config_path, std::string& network_file,
+                                    const drivers::NetworkConfig& base) {
+    if (network_file.empty()) {
+        return base;
+    }
+    const fs::path file = fs::absolute(config_path.parent_path() / network_file).lexically_normal();
+    std::error_code error;
+    schema.require("network_file", fs::is_regular_file(file, error),
+                   "name a network file or be \"\"; there is none at " + file.string());
+    network_file = file.string();
+    return load_network_file(file, base);
+}
+
 ControllerConfig load_controller_config(const fs::path& path) {
     ControllerConfig config;
     std::string crane_file;
+    std::string network_file;
     TomlSchema schema;
-    declare_controller_config(schema, config, crane_file);
+    declare_controller_config(schema, config, crane_file, network_file);
     schema.read_file(path);
 
     config.crane_file = fs::absolute(path.parent_path() / crane_file).lexically_normal();
@@ -106,14 +130,20 @@ ControllerConfig load_controller_config(const fs::path& path) {
     config.crane = load_crane_file(config.crane_file);
     schema.require("limits.max_opening_m", config.max_opening_m <= config.crane.crane.actuator.spool_travel_m,
                    "not exceed actuator.spool_travel_m of " + config.crane_file.string());
+    config.network = load_network(schema, path, network_file,
+                                  {.spool_travel_m = config.crane.crane.actuator.spool_travel_m,
+                                   .period_ns = config.period_ns(),
+                                   .bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s)});
+    config.network_file = network_file;
     return config;
 }
 
 std::string to_toml(const ControllerConfig& config) {
     ControllerConfig copy = config;
     std::string crane_file = config.crane_file.string();
+    std::string network_file = config.network_file.string();
     TomlSchema schema;
-    declare_controller_config(schema, copy, crane_file);
+    declare_controller_config(schema, copy, crane_file, network_file);
     return schema.write();
 }
 

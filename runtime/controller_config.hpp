@@ -5,6 +5,7 @@
 #include <string>
 
 #include "controllers/law.hpp"
+#include "drivers/network_config.hpp"
 #include "runtime/crane_file.hpp"
 
 namespace steadyboom::runtime {
@@ -15,6 +16,9 @@ struct ControllerConfig {
     std::filesystem::path crane_file;  ///< absolute
     CraneFile crane;                   ///< what that file holds
     controllers::LawKind law = controllers::LawKind::none;
+
+    std::filesystem::path network_file;  ///< absolute, or empty: the devices of the virtual crane
+    drivers::NetworkConfig network;      ///< what that file, the bus, the tick and the crane make of it
 
     std::string interface;         ///< SocketCAN
     int bit_rate_bit_s = 500'000;  ///< of the interface, for the bus load; the interface is set up elsewhere
@@ -41,7 +45,14 @@ struct ControllerConfig {
 /// Declare keys that other programs on the same bus have too, for the section that was declared last.
 void declare_bus(TomlSchema& schema, std::string& interface, int& bit_rate_bit_s);
 void declare_rate(TomlSchema& schema, double& rate_Hz);
+void declare_network_file(TomlSchema& schema, std::string& network_file);
 void declare_ring_path(TomlSchema& schema, std::string& ring_path);
+
+/// The network of a program on this bus: what the file named by `network_file` (as read by `schema`, relative to the
+/// folder of `config_path`; empty: none) says over the defaults. Leaves the file's absolute path in `network_file`.
+/// Throws ConfigError.
+[[nodiscard]] drivers::NetworkConfig load_network(const TomlSchema& schema, const std::filesystem::path& config_path,
+                                                  std::string& network_file, const drivers::NetworkConfig& base);
 
 /// A file that load_controller_config reads back to the same values. The crane stays in its own file.
 [[nodiscard]] std::string to_toml(const ControllerConfig& config);

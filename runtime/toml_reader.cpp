@@ -161,7 +161,7 @@ struct TomlSchema::Document {
     const toml::table& root;
 
     [[nodiscard]] const toml::table* section(const std::string& name) const {
-        return name.empty() ? &root : root[name].as_table();
+        return name.empty() ? &root : toml::at_path(root, name).as_table();
     }
 };
 
@@ -182,9 +182,9 @@ void TomlSchema::number(std::string key, double& variable, Range range, std::str
         "a number in " + range.text() + (unit.empty() ? "" : " " + unit));
 }
 
-void TomlSchema::integer(std::string key, int& variable, int low, int high, std::string unit) {
-    add(std::move(key), Integer{&variable, low, high},
-        "an integer in [" + std::to_string(low) + ", " + std::to_string(high) + "]" + (unit.empty() ? "" : " " + unit));
+std::string TomlSchema::integer_allowed(std::int64_t low, std::int64_t high, const std::string& unit) {
+    return "an integer in [" + std::to_string(low) + ", " + std::to_string(high) + "]" +
+           (unit.empty() ? "" : " " + unit);
 }
 
 void TomlSchema::boolean(std::string key, bool& variable) {
@@ -256,22 +256,31 @@ void TomlSchema::require(std::string_view name, bool holds, const std::string& r
 void TomlSchema::reject_unknown(const Document& document) const {
     std::size_t line = std::numeric_limits<std::size_t>::max();
     std::string message;
-    const auto inspect = [&](const toml::table& table, const std::string& section) {
+    const auto inspect = [&](const auto& again, const toml::table& table, const std::string& section) -> void {
         for (const auto& [node_key, node] : table) {
             const std::string_view name = node_key.str();
+            const std::string whole = joined(section, name);
             const bool known_key = std::any_of(keys_.begin(), keys_.end(), [&](const Key& key) {
                 return sections_[key.section].name == section && key.name == name;
             });
-            const bool known_section = section.empty() && std::any_of(sections_.begin() + 1, sections_.end(),
-                                                                      [&](const Section& s) { return s.name == name; });
-            if (known_key || (known_section && node.is_table()) || node_key.source().begin.line >= line) {
+            const bool known_section = std::any_of(sections_.begin() + 1, sections_.end(), [&](const Section& s) {
+                return s.name == whole || s.name.starts_with(whole + ".");
+            });
+            if (known_section && node.is_table()) {
+                again(again, *node.as_table(), whole);
+                continue;
+            }
+            if (known_key || node_key.source().begin.line >= line) {
                 continue;
             }
             line = std::max<std::size_t>(1, node_key.source().begin.line);
             const std::string full = joined(section, shortened(name));
+            const bool takes_sections =
+                section.empty() || std::any_of(sections_.begin(), sections_.end(),
+                                               [&](const Section& s) { return s.name.starts_with(section + "."); });
             if (known_section) {
                 message = full + " = " + node_text(node) + ": must be a section [" + full + "]";
-            } else if (section.empty() && node.is_table()) {
+            } else if (takes_sections && node.is_table()) {
                 message = "[" + full + "]: unknown section; known are";
                 for (std::size_t i = 1; i < sections_.size(); ++i) {
                     message += (i == 1 ? " [" : ", [") + sections_[i].name + "]";
@@ -282,12 +291,7 @@ void TomlSchema::reject_unknown(const Document& document) const {
             }
         }
     };
-    inspect(document.root, "");
-    for (std::size_t i = 1; i < sections_.size(); ++i) {
-        if (const toml::table* table = document.section(sections_[i].name)) {
-            inspect(*table, sections_[i].name);
-        }
-    }
+    inspect(inspect, document.root, "");
     if (!message.empty()) {
         fail(line, message);
     }
@@ -321,7 +325,7 @@ void TomlSchema::read_key(const Document& document, Key& key) {
             if (value == nullptr || value->get() < binding.low || value->get() > binding.high) {
                 return false;
             }
-            *binding.variable = static_cast<int>(value->get());
+            binding.set(value->get());
         } else if constexpr (std::is_same_v<T, Boolean>) {
             const auto* value = node->as_boolean();
             if (value == nullptr) {
@@ -380,7 +384,7 @@ std::string TomlSchema::value_text(const Key& key) {
             if constexpr (std::is_same_v<T, Number>) {
                 return float_literal(binding.file_value());
             } else if constexpr (std::is_same_v<T, Integer>) {
-                return std::to_string(*binding.variable);
+                return std::to_string(binding.get());
             } else if constexpr (std::is_same_v<T, Boolean>) {
                 return *binding.variable ? "true" : "false";
             } else if constexpr (std::is_same_v<T, Text>) {

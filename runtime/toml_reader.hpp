@@ -50,14 +50,21 @@ struct Range {
 /// asked and nothing else is converted.
 class TomlSchema {
   public:
-    /// Keys declared after this belong to `[name]`. Keys declared before any section stand at the top of the file.
+    /// Keys declared after this belong to `[name]`; dots in the name nest. Keys declared before any section stand at
+    /// the top of the file.
     void section(std::string name);
     /// A section that may be left out as a whole. Its variables then keep their values.
     void optional_section(std::string name);
 
     /// `unit` is the file's; `si_per_file_unit` times the file's number is the variable's.
     void number(std::string key, double& variable, Range range, std::string unit, double si_per_file_unit = 1.0);
-    void integer(std::string key, int& variable, int low, int high, std::string unit = {});
+    template <class Whole>
+    void integer(std::string key, Whole& variable, std::int64_t low, std::int64_t high, std::string unit = {}) {
+        add(std::move(key),
+            Integer{[&variable](std::int64_t value) { variable = static_cast<Whole>(value); },
+                    [&variable] { return static_cast<std::int64_t>(variable); }, low, high},
+            integer_allowed(low, high, unit));
+    }
     void boolean(std::string key, bool& variable);
     /// `allowed` completes the sentence "must be ...".
     void text(std::string key, std::string& variable, std::function<bool(const std::string&)> accepts,
@@ -112,8 +119,9 @@ class TomlSchema {
         [[nodiscard]] double file_value() const;
     };
     struct Integer {
-        int* variable;
-        int low, high;
+        std::function<void(std::int64_t)> set;
+        std::function<std::int64_t()> get;
+        std::int64_t low, high;
     };
     struct Boolean {
         bool* variable;
@@ -146,6 +154,7 @@ class TomlSchema {
     };
     struct Document;
 
+    [[nodiscard]] static std::string integer_allowed(std::int64_t low, std::int64_t high, const std::string& unit);
     void add(std::string name, Binding binding, std::string allowed);
     [[noreturn]] void fail(std::size_t line, const std::string& message) const;
     void read(const Document& document);

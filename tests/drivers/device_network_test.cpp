@@ -146,11 +146,11 @@ TEST_F(DeviceNetworkTest, AnswersNothingButOrdersOfTheController) {
             receive({{.id = id, .length = length}});
         }
     }
-    // NMT, SYNC, both RPDOs and the controller's heartbeat, each with one length.
-    EXPECT_EQ(network_.status().accepted_frames, 1U + 5U);
-    EXPECT_EQ(network_.status().wrong_length_frames, 5U * 8U);
-    EXPECT_EQ(network_.status().unknown_id_frames, (2048U - 5U) * 9U);
-    EXPECT_EQ(network_.filters().size(), 4U);
+    // NMT, SYNC, both RPDOs, the controller's heartbeat and seven SDO requests, each with one length.
+    EXPECT_EQ(network_.status().accepted_frames, 1U + 12U);
+    EXPECT_EQ(network_.status().wrong_length_frames, 12U * 8U);
+    EXPECT_EQ(network_.status().unknown_id_frames, (2048U - 12U) * 9U);
+    EXPECT_EQ(network_.filters().size(), 11U);
 }
 
 TEST_F(DeviceNetworkTest, SetPointBeyondFullScaleIsCutAndUnknownModeIsDisabled) {

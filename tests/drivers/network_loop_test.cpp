@@ -95,7 +95,7 @@ TEST_F(NetworkLoop, SamplesArriveOneTickAfterTheSyncTheyAnswerToWithinHalfAStep)
     EXPECT_EQ(controller_.status().unknown_id_frames + controller_.status().wrong_length_frames, 0U);
     EXPECT_EQ(devices_.status().unknown_id_frames + devices_.status().wrong_length_frames, 0U);
     for (std::size_t i = 1; i < device_count; ++i) {
-        EXPECT_LE(controller_.status().nodes[i].heartbeat_age_ns, heartbeat_interval_ns);
+        EXPECT_LE(controller_.status().nodes[i].heartbeat_age_ns, 100'000'000);
     }
 }
 

@@ -77,7 +77,7 @@ TEST(PdoCodec, EveryRawCodeOfEverySixteenBitSignalSurvives) {
     }
 }
 
-TEST(PdoCodec, SignalTouchesOnlyItsOwnBytes) {
+TEST(PdoCodec, SignalTouchesOnlyItsOwnBits) {
     for (const auto& row : table().signals()) {
         auto zeros = table().blank(row.message, 0);
         auto ones = zeros;
@@ -85,8 +85,12 @@ TEST(PdoCodec, SignalTouchesOnlyItsOwnBytes) {
         write_raw(row, 0x5A5A'5A5A, zeros);
         write_raw(row, 0x5A5A'5A5A, ones);
         EXPECT_EQ(read_raw(row, zeros), read_raw(row, ones)) << row.name;
-        for (std::size_t i = 0; i < zeros.data.size(); ++i) {
-            EXPECT_TRUE(zeros.data[i] == ones.data[i] || (zeros.data[i] == 0 && ones.data[i] == 0xFF)) << row.name;
+        const unsigned first_bit = 8U * row.byte_offset + row.bit;
+        for (unsigned bit = 0; bit < 64; ++bit) {
+            if (bit < first_bit || bit >= first_bit + size_bits(row.type)) {
+                EXPECT_EQ(zeros.data[bit / 8] >> (bit % 8) & 1, 0) << row.name << " bit " << bit;
+                EXPECT_EQ(ones.data[bit / 8] >> (bit % 8) & 1, 1) << row.name << " bit " << bit;
+            }
         }
     }
 }
@@ -127,6 +131,7 @@ TEST(PdoCodec, NoValueCodesAreRejectedOnEverySensorChannel) {
                 codes = {0xFFFF'FFFE, 0xFFFF'FFFF};
                 break;
             case RawType::u8:
+            case RawType::bit:
                 FAIL() << row.name;
         }
         for (const auto raw : codes) {

@@ -80,7 +80,7 @@ TEST_F(ControllerConfigFile, EveryLawOfTheControllersHasItsWord) {
 }
 
 TEST_F(ControllerConfigFile, NamesEachMissingKeyAndTheLineOfItsSection) {
-    ASSERT_EQ(keys.size(), 14U);
+    ASSERT_EQ(keys.size(), 15U);
     const std::vector<std::string> lines = lines_of(text);
     for (const Line& key : keys) {
         std::vector<std::string> without = lines;
@@ -95,6 +95,7 @@ TEST_F(ControllerConfigFile, NamesEachMissingKeyAndTheLineOfItsSection) {
 TEST_F(ControllerConfigFile, NamesLineKeyAndValueOfEachBadValue) {
     const std::vector<std::pair<std::string, std::vector<std::string>>> bad_values{
         {"crane_file", {"3", "\"\"", "\"a\\u0000b\""}},
+        {"network_file", {"3", "\"a\\u0000b\"", "\"nowhere.toml\"", "\".\""}},
         {"law", {"0", "\"Swing-rate\""}},
         {"interface", {"3", "\"\"", "\"can 0\"", "\"a/b\"", "\"..\"", "\"sixteen-letters-\""}},
         {"bit_rate_bit_s", {"500000.0", "300000", "0", "-125000", "9223372036854775807", "\"500k\""}},
@@ -140,6 +141,20 @@ TEST_F(ControllerConfigFile, RejectsAMissingOrBadCraneFile) {
     EXPECT_THAT(error_of(with_value(text, line("crane_file"), "\"controller.toml\"")),
                 HasSubstr("controller.toml:6: crane_file = \"controller.toml\": unknown key"))
         << "it is no crane file";
+}
+
+TEST_F(ControllerConfigFile, NetworkFileDescribesTheDevicesOfItsBus) {
+    const auto plain = load(text);
+    EXPECT_TRUE(plain.network_file.empty());
+    const TemporaryFile network("network.toml", "[device]\ncontroller = { node_id = 5, heartbeat_ms = 50 }\n");
+    const auto named = load(with_value(text, line("network_file"), "\"" + network.path().string() + "\""));
+    EXPECT_EQ(named.network_file, network.path());
+    EXPECT_EQ(named.network[drivers::Device::controller].node_id, 5);
+    for (const auto& config : {plain, named}) {
+        EXPECT_EQ(config.network.spool_travel_m, config.crane.crane.actuator.spool_travel_m);
+        EXPECT_EQ(config.network.period_ns, 5'000'000);
+        EXPECT_EQ(config.network.bit_rate_bit_s, 500'000U);
+    }
 }
 
 TEST_F(ControllerConfigFile, ComesBackFromItsOwnWriting) {
