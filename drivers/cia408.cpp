@@ -23,17 +23,16 @@ struct Transition {
     std::uint16_t mask;
     std::uint16_t value;
     ValveState to;
-    bool raises;  ///< not while a fault lasts
 };
 
 constexpr std::array transitions = {
-    Transition{init, 0b001, 0b001, disabled, true},
-    Transition{disabled, 0b011, 0b011, hold, true},
-    Transition{hold, 0b111, 0b111, active, true},
-    Transition{active, 0b100, 0b000, hold, false},
-    Transition{hold, 0b110, 0b000, disabled, false},
-    Transition{disabled, 0b111, 0b000, init, false},
-    Transition{fault_hold, 0b110, 0b000, fault_disabled, false},
+    Transition{init, 0b001, 0b001, disabled},
+    Transition{disabled, 0b011, 0b011, hold},
+    Transition{hold, 0b111, 0b111, active},
+    Transition{active, 0b100, 0b000, hold},
+    Transition{hold, 0b110, 0b000, disabled},
+    Transition{disabled, 0b111, 0b000, init},
+    Transition{fault_hold, 0b110, 0b000, fault_disabled},
 };
 
 /// A reset: taken on the rising edge of the reset bit while the other bits stay at `value`.
@@ -170,14 +169,14 @@ bool Cia408Valve::take_transition(const Inputs& inputs, bool reset_edge) noexcep
         fault_state_ = inputs.fault == ValveFault::disables ? fault_disabled : fault_state_;
         return inputs.reaction_done && go(fault_state_);
     }
-    const bool healthy = inputs.fault == ValveFault::none;
     for (const auto& row : transitions) {
-        if (row.from == state_ && (inputs.control_word_raw & row.mask) == row.value && (healthy || !row.raises)) {
+        if (row.from == state_ && (inputs.control_word_raw & row.mask) == row.value) {
             return go(row.to);
         }
     }
+    const bool may_reset = reset_edge && inputs.fault == ValveFault::none;
     for (const auto& row : resets) {
-        if (row.from == state_ && reset_edge && healthy && (inputs.control_word_raw & mode_bits) == row.value) {
+        if (row.from == state_ && may_reset && (inputs.control_word_raw & mode_bits) == row.value) {
             return go(row.to);
         }
     }

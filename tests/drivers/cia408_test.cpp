@@ -295,7 +295,7 @@ class Cia408LoopTest : public ::testing::Test {
     Cia408Controller controller_;
     Cia408Valve valve_;
     std::uint16_t word_ = 0;
-    std::deque<ValveState> reports_ = std::deque<ValveState>(4, not_ready);
+    std::deque<ValveState> reports_ = std::deque<ValveState>(5, not_ready);
 };
 
 TEST_F(Cia408LoopTest, RaisesOneStateATickAndLowersAtOnce) {
@@ -334,22 +334,38 @@ TEST_F(Cia408LoopTest, FaultedValveIsKeptDisabledEvenWhenTheFaultResetsItself) {
     EXPECT_EQ(word_, 0b0001);
 }
 
+TEST_F(Cia408LoopTest, FaultDuringTheRiseKeepsItDownToo) {
+    tick(ValveMode::disabled);
+    tick(ValveMode::active);
+    tick(ValveMode::active, ValveFault::holds);
+    ASSERT_TRUE(is_fault(valve_.state()));
+    tick(ValveMode::active);
+    valve_ = valve_in(hold);  // someone at the valve has reset it
+    reports_.front() = hold;
+    for (int i = 0; i < 10; ++i) {
+        tick(ValveMode::active);
+        EXPECT_EQ(word_, 0b0001);
+    }
+}
+
 TEST_F(Cia408LoopTest, QuickLoweringAndRaisingIsNoFall) {
-    for (int lag_ticks = 1; lag_ticks <= 3; ++lag_ticks) {
+    for (int lag_ticks = 1; lag_ticks <= 5; ++lag_ticks) {
         for (const auto low : {ValveMode::hold, ValveMode::disabled}) {
-            for (int low_ticks = 1; low_ticks <= 6; ++low_ticks) {
-                for (int i = 0; i < 20; ++i) {
-                    tick(ValveMode::active, ValveFault::none, lag_ticks);
+            for (const auto high : {ValveMode::hold, ValveMode::active}) {
+                for (int low_ticks = 1; low_ticks <= 8; ++low_ticks) {
+                    for (int i = 0; i < 20; ++i) {
+                        tick(ValveMode::active, ValveFault::none, lag_ticks);
+                    }
+                    ASSERT_EQ(valve_.state(), active);
+                    for (int i = 0; i < low_ticks; ++i) {
+                        tick(low, ValveFault::none, lag_ticks);
+                    }
+                    for (int i = 0; i < 20; ++i) {
+                        tick(high, ValveFault::none, lag_ticks);
+                        ASSERT_FALSE(controller_.fallen()) << lag_ticks << " " << low_ticks;
+                    }
+                    ASSERT_EQ(valve_.state(), high == ValveMode::hold ? hold : active) << lag_ticks << " " << low_ticks;
                 }
-                ASSERT_EQ(valve_.state(), active);
-                for (int i = 0; i < low_ticks; ++i) {
-                    tick(low, ValveFault::none, lag_ticks);
-                }
-                for (int i = 0; i < 20; ++i) {
-                    tick(ValveMode::active, ValveFault::none, lag_ticks);
-                    ASSERT_FALSE(controller_.fallen()) << lag_ticks << " " << low_ticks;
-                }
-                ASSERT_EQ(valve_.state(), active) << lag_ticks << " " << low_ticks;
             }
         }
     }
