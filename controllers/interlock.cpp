@@ -61,7 +61,7 @@ constexpr std::array reason_rows = {
     ReasonRow{reason_flood, ReasonEffect::stop, "the bus is flooded"},
     ReasonRow{reason_spoof, ReasonEffect::immediate, "a process on this machine sends as a device"},
     ReasonRow{reason_frames_lost, ReasonEffect::warn, "the CAN interface lost frames"},
-    ReasonRow{reason_bus_setup, ReasonEffect::warn, "the CAN interface is not set up as configured"},
+    ReasonRow{reason_bus_setup, ReasonEffect::warn, "the CAN interface is not set up as configured, or not watched"},
 };
 
 constexpr std::uint32_t reasons_with(ReasonEffect effect) noexcept {
@@ -98,12 +98,12 @@ double checked_s(double time_s, const char* name) {
     return time_s;
 }
 
+}  // namespace
+
 bool moves(InterlockState state) noexcept {
     return state == InterlockState::engaging || state == InterlockState::active || state == InterlockState::limited ||
            state == InterlockState::stopping;
 }
-
-}  // namespace
 
 const char* name_of(InterlockState state) noexcept {
     constexpr std::array names = {"STANDBY", "READY",    "HOLD",       "ENGAGING",

@@ -22,6 +22,9 @@ enum class InterlockState : std::uint8_t {
     limited,     ///< engaged, with little authority while a limiting fault lasts
 };
 
+/// Whether the valve may move in that state.
+[[nodiscard]] bool moves(InterlockState state) noexcept;
+
 /// "STANDBY", "READY", ...
 [[nodiscard]] const char* name_of(InterlockState state) noexcept;
 
@@ -48,7 +51,7 @@ enum InterlockReason : std::uint32_t {
     reason_flood = 1U << 15,               ///< more frames than the devices can have sent, or frames lost for that
     reason_spoof = 1U << 16,               ///< a process on this machine plays a device
     reason_frames_lost = 1U << 17,         ///< warns: the interface lost frames before they were read
-    reason_bus_setup = 1U << 18,           ///< warns: the interface is not set up as configured
+    reason_bus_setup = 1U << 18,           ///< warns: the interface is not set up as configured, or nobody watches it
 };
 
 /// Largest authority while a limiting reason lasts.

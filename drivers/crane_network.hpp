@@ -60,9 +60,10 @@ class CraneNetwork {
     /// Identifiers that decode() takes, for the kernel.
     [[nodiscard]] std::vector<CanFilter> filters() const;
 
-  private:
+    /// Of one encode(), and what an interface's transmit queue must hold.
     static constexpr std::size_t most_frames = 4;
 
+  private:
     [[nodiscard]] Message accepted_message(const CanFrame& frame) noexcept;
     void decode_heartbeat(Device device, std::uint8_t state_raw, std::int64_t now_ns) noexcept;
     void decode_pdo(Message message, const CanFrame& frame) noexcept;

@@ -165,16 +165,15 @@ std::pair<int, int> open_socket(const std::string& interface, const SocketCanOpt
 }  // namespace
 
 std::string interface_driver(const std::string& interface) {
-    const Socket socket;
-    (void)interface_index(socket, interface);
     ifreq request = request_for(interface);
     ethtool_drvinfo info{};
     info.cmd = ETHTOOL_GDRVINFO;
     request.ifr_data = reinterpret_cast<char*>(&info);
-    if (::ioctl(socket.fd(), SIOCETHTOOL, &request) != 0) {
-        return {};
-    }
-    return {std::begin(info.driver), std::find(std::begin(info.driver), std::end(info.driver), '\0')};
+    // Any socket may ask, and not everyone who asks may open CAN sockets.
+    const int any = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const bool told = ::ioctl(any, SIOCETHTOOL, &request) == 0;
+    ::close(any);
+    return told ? std::string(std::begin(info.driver), std::ranges::find(info.driver, '\0')) : std::string();
 }
 
 bool is_virtual_driver(const std::string& driver) noexcept {
@@ -210,13 +209,8 @@ struct SocketCanBus::Buffers {
 
 SocketCanBus::SocketCanBus(std::string interface, SocketCanOptions options)
     : interface_(std::move(interface)), options_(std::move(options)), buffers_(std::make_unique<Buffers>()) {
+    expects_remote_ = options_.expect_remote.value_or(!is_virtual_driver(interface_driver(interface_)));
     std::tie(fd_, granted_buffer_bytes_) = open_socket(interface_, options_);
-    try {
-        expects_remote_ = options_.expect_remote.value_or(!is_virtual_driver(interface_driver(interface_)));
-    } catch (const std::exception&) {  // gone between the two
-        ::close(fd_);
-        throw;
-    }
 }
 
 SocketCanBus::~SocketCanBus() {

@@ -78,8 +78,8 @@ class SocketCanBus final : public CanBus {
     std::atomic<int> retired_fd_{-1};  ///< back to tend(), to be closed
 };
 
-/// Driver of an interface as the kernel names it: "vcan", "vxcan", a hardware driver's name; empty when it says none.
-/// Throws std::runtime_error when there is no such interface.
+/// Driver of an interface as the kernel names it: "vcan", "vxcan", a hardware driver's name; empty when it says none or
+/// there is no such interface. Throws std::runtime_error for what is no interface's name.
 [[nodiscard]] std::string interface_driver(const std::string& interface);
 
 /// All senders are on this machine: vcan or vxcan.

@@ -172,6 +172,7 @@ runtime::ControllerConfig controller_config(const RunOptions& options, const std
     config.crane_file = folder / "controller-crane.toml";
     config.law = options.law;
     config.interface = interface;
+    config.expect_remote = false;  // the crane is on this machine, whatever the interface
     config.rate_Hz = options.rate_Hz;
     config.realtime_required = false;
     config.max_opening_m = tick.max_opening_m;

@@ -22,6 +22,9 @@ const auto law_words = [] {
     return words;
 }();
 
+constexpr std::array<std::pair<std::string_view, std::optional<bool>>, 3> expect_remote_words{
+    {{"automatic", std::nullopt}, {"yes", true}, {"no", false}}};
+
 bool is_interface_name(const std::string& text) {
     return !text.empty() && text.size() <= 15 && text != "." && text != ".." &&
            std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7F && c != '/' && c != ':'; });
@@ -46,6 +49,11 @@ void declare_controller_config(TomlSchema& schema, ControllerConfig& config, std
 
     schema.section("bus");
     declare_bus(schema, config.interface, config.bit_rate_bit_s);
+    schema.word<std::optional<bool>>("expect_remote", config.expect_remote, expect_remote_words);
+    schema.text(
+        "link_socket_path", config.link_socket_path,
+        [](const std::string& text) { return text.empty() || is_absolute_file_path(text, longest_socket_path); },
+        "empty or an absolute path of at most 107 bytes");
     schema.section("loop");
     declare_rate(schema, config.rate_Hz);
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "controllers/law.hpp"
@@ -20,9 +21,11 @@ struct ControllerConfig {
     std::filesystem::path network_file;  ///< absolute, or empty: the devices of the virtual crane
     drivers::NetworkConfig network;      ///< what that file, the bus, the tick and the crane make of it
 
-    std::string interface;         ///< SocketCAN
-    int bit_rate_bit_s = 500'000;  ///< of the interface, for the bus load; the interface is set up elsewhere
-    double rate_Hz = 200.0;        ///< control ticks
+    std::string interface;                   ///< SocketCAN
+    int bit_rate_bit_s = 500'000;            ///< of the interface, for the bus load; the interface is set up elsewhere
+    std::optional<bool> expect_remote = {};  ///< every device is on another machine; not set: unless the bus is virtual
+    std::string link_socket_path;            ///< of the link daemon; empty: nobody watches the interface
+    double rate_Hz = 200.0;                  ///< control ticks
 
     int realtime_priority = 80;  ///< SCHED_FIFO, 1 to 99; 0: ordinary scheduling
     int realtime_cpu = -1;       ///< pin the control thread to it; -1: any

@@ -3,12 +3,14 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
 #include "drivers/socketcan_bus.hpp"
+#include "runtime/can_link/link_watch.hpp"
 #include "runtime/control_tick.hpp"
 #include "runtime/controller_config.hpp"
 #include "runtime/operator_socket.hpp"
@@ -84,7 +86,13 @@ class Supervisor {
 
 int control(const runtime::ControllerConfig& config) {
     drivers::CraneNetwork network(tick_config(config).network);
-    drivers::SocketCanBus bus(config.interface, {.filters = network.filters()});
+    drivers::SocketCanBus bus(config.interface, {.filters = network.filters(), .expect_remote = config.expect_remote});
+    const runtime::HelperThread bus_tender("bus", [&bus](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            bus.tend();
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+    });
     runtime::MonotonicClock clock;
     runtime::OperatorMailbox mailbox;
     runtime::TickRingWriter<runtime::TickRecord> ring(
@@ -101,6 +109,15 @@ int control(const runtime::ControllerConfig& config) {
     };
     socket_options.log = [](const std::string& line) { spdlog::info("operator: {}", line); };
     const runtime::OperatorSocket socket(socket_options, mailbox, clock);
+
+    std::optional<runtime::LinkWatch> link_watch;
+    if (!config.link_socket_path.empty()) {
+        link_watch.emplace(runtime::LinkWatchOptions{
+            .socket_path = config.link_socket_path,
+            .set_reasons = [&tick](std::uint32_t reasons) { tick->set_link_reasons(reasons); },
+            .may_restart = [&mailbox] { return !moves(static_cast<InterlockState>(mailbox.status().state)); },
+            .log = [](const std::string& line) { spdlog::info("link: {}", line); }});
+    }
 
     runtime::PeriodicLoop loop(clock, config.period_ns());
     const Supervisor supervisor(mailbox, loop);
@@ -120,6 +137,8 @@ int control(const runtime::ControllerConfig& config) {
     }
     spdlog::info("{} at {} Hz on {}: {}", controllers::name_of(config.law), config.rate_Hz, config.interface,
                  grant.summary());
+    spdlog::info("{}: receive buffer of {} frames; devices are {}", config.interface, bus.receive_buffer_frames(),
+                 bus.expects_remote() ? "on other machines only" : "on this machine too");
 
     // After a stop request the operator's stop is in force: the command ramps down, then the valve hears a live
     // controller that wants nothing for a moment more.

@@ -2,14 +2,14 @@
 
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <sys/un.h>
 
 #include <cerrno>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <thread>
+
+#include "runtime/local_socket.hpp"
 
 namespace steadyboom::runtime {
 
@@ -19,26 +19,11 @@ namespace {
     throw std::runtime_error("operator socket " + path.string() + ": " + what);
 }
 
-FileDescriptor connect_once(const sockaddr_un& address) {
-    FileDescriptor connection(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0));
-    if (connect(connection.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-        return {};
-    }
-    return connection;
-}
-
 }  // namespace
 
 OperatorClient::OperatorClient(const std::filesystem::path& path, std::chrono::milliseconds patience) : path_(path) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    if (path.empty() || path.native().size() >= sizeof address.sun_path) {
-        fail(path, "the path must have 1 to " + std::to_string(sizeof address.sun_path - 1) + " characters");
-    }
-    std::memcpy(address.sun_path, path.c_str(), path.native().size());
-
     const auto give_up = std::chrono::steady_clock::now() + patience;
-    socket_ = connect_once(address);
+    socket_ = connect_to(path);
     while (!socket_.is_open()) {
         const int error = errno;
         if ((error != ENOENT && error != ECONNREFUSED) || std::chrono::steady_clock::now() >= give_up) {
@@ -46,7 +31,7 @@ OperatorClient::OperatorClient(const std::filesystem::path& path, std::chrono::m
                            (error == EACCES ? "; join the group that owns it" : "; start the controller first"));
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        socket_ = connect_once(address);
+        socket_ = connect_to(path);
     }
 }
 

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "runtime/file_descriptor.hpp"
+#include "runtime/local_socket.hpp"
 #include "runtime/realtime_thread.hpp"
 
 namespace steadyboom::runtime {
@@ -34,21 +35,6 @@ std::string words(int error) {
     throw std::runtime_error("operator socket " + path.string() + ": " + what);
 }
 
-sockaddr_un address_of(const std::filesystem::path& path) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    if (path.empty() || path.native().size() >= sizeof address.sun_path) {
-        fail(path, "the path must have 1 to " + std::to_string(sizeof address.sun_path - 1) + " characters");
-    }
-    std::memcpy(address.sun_path, path.c_str(), path.native().size());
-    return address;
-}
-
-bool answers(const sockaddr_un& address) {
-    const FileDescriptor probe(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    return connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 || errno == EAGAIN;
-}
-
 FileDescriptor handed_over_by_systemd() {
     const int count = sd_listen_fds(0);
     for (int descriptor = SD_LISTEN_FDS_START; descriptor < SD_LISTEN_FDS_START + count; ++descriptor) {
@@ -57,29 +43,6 @@ FileDescriptor handed_over_by_systemd() {
         }
     }
     return {};
-}
-
-FileDescriptor listen_at(const std::filesystem::path& path, std::uint32_t file_mode) {
-    const sockaddr_un address = address_of(path);
-    const auto* generic = reinterpret_cast<const sockaddr*>(&address);
-    FileDescriptor listener(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    int result = bind(listener.get(), generic, sizeof address);
-    if (result != 0 && errno == EADDRINUSE) {
-        if (answers(address)) {
-            fail(path, "another program listens there; stop it, or name another path");
-        }
-        struct stat facts {};
-        if (stat(path.c_str(), &facts) == 0 && !S_ISSOCK(facts.st_mode)) {
-            fail(path, "there is a file of another kind; name another path");
-        }
-        unlink(path.c_str());
-        result = bind(listener.get(), generic, sizeof address);
-    }
-    // Nobody can connect before listen(), so the mode set in between is the first that counts.
-    if (result != 0 || chmod(path.c_str(), file_mode) != 0 || listen(listener.get(), 16) != 0) {
-        fail(path, "cannot listen: " + words(errno) + "; make its folder and let this user write there");
-    }
-    return listener;
 }
 
 PeerCredentials credentials_of(int descriptor) {

@@ -36,6 +36,9 @@ int run_service(const ServiceProgram& program, int argc, char** argv) {
     app.set_version_flag("--version", program.name + " " STEADYBOOM_VERSION);
     std::string config;
     app.add_option("--config", config, "Configuration file; its form: " + program.config_form)->required();
+    if (program.declare_options) {
+        program.declare_options(app);
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

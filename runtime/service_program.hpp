@@ -5,13 +5,18 @@
 #include <functional>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace steadyboom::runtime {
 
 /// A program that is started with a configuration file and runs until it is told to end.
 struct ServiceProgram {
-    std::string name;         ///< as installed; names its log lines
-    std::string purpose;      ///< first lines of --help
-    std::string config_form;  ///< file that documents the configuration's form
+    std::string name;                                     ///< as installed; names its log lines
+    std::string purpose;                                  ///< first lines of --help
+    std::string config_form;                              ///< file that documents the configuration's form
+    std::function<void(CLI::App&)> declare_options = {};  ///< beside --config; may be empty
     /// The program itself. Returns the exit code; ConfigError becomes 2 and any other exception 1, each with one line.
     std::function<int(const std::filesystem::path& config)> work;
 };

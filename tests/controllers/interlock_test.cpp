@@ -129,9 +129,6 @@ Machine machine_in(InterlockState wanted) {
     return machine;
 }
 
-bool moves(InterlockState state) {
-    return state == engaging || state == active || state == limited || state == stopping;
-}
 bool armed(InterlockState state) {
     return state == hold || moves(state);
 }

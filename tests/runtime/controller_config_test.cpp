@@ -56,6 +56,8 @@ TEST_F(ControllerConfigFile, ShippedDefaultLoads) {
     EXPECT_EQ(config.law, controllers::LawKind::joint_deflection);
     EXPECT_EQ(config.interface, "can0");
     EXPECT_EQ(config.bit_rate_bit_s, 500'000);
+    EXPECT_EQ(config.expect_remote, std::nullopt);
+    EXPECT_EQ(config.link_socket_path, "/run/steadyboom-can/can0/link.sock");
     EXPECT_EQ(config.rate_Hz, 200.0);
     EXPECT_EQ(config.period_ns(), 5'000'000);
     EXPECT_EQ(config.realtime_priority, 80);
@@ -80,7 +82,7 @@ TEST_F(ControllerConfigFile, EveryLawOfTheControllersHasItsWord) {
 }
 
 TEST_F(ControllerConfigFile, NamesEachMissingKeyAndTheLineOfItsSection) {
-    ASSERT_EQ(keys.size(), 15U);
+    ASSERT_EQ(keys.size(), 17U);
     const std::vector<std::string> lines = lines_of(text);
     for (const Line& key : keys) {
         std::vector<std::string> without = lines;
@@ -99,6 +101,8 @@ TEST_F(ControllerConfigFile, NamesLineKeyAndValueOfEachBadValue) {
         {"law", {"0", "\"Swing-rate\""}},
         {"interface", {"3", "\"\"", "\"can 0\"", "\"a/b\"", "\"..\"", "\"sixteen-letters-\""}},
         {"bit_rate_bit_s", {"500000.0", "300000", "0", "-125000", "9223372036854775807", "\"500k\""}},
+        {"expect_remote", {"true", "\"maybe\""}},
+        {"link_socket_path", {"1", "\"link.sock\"", "\"/run/\"", "\"/" + std::string(107, 'x') + "\""}},
         {"rate_Hz", {"49.9", "2000.1", "nan", "inf", "-200", "0", "true", "\"200\""}},
         {"priority", {"-1", "100", "80.0", "true", "4294967376"}},
         {"cpu", {"-2", "1024", "0.0", "\"0\""}},
@@ -163,6 +167,8 @@ TEST_F(ControllerConfigFile, ComesBackFromItsOwnWriting) {
     config.law = controllers::LawKind::swing_rate;
     config.interface = "vcan0";
     config.bit_rate_bit_s = 250'000;
+    config.expect_remote = false;
+    config.link_socket_path = "";
     config.rate_Hz = 1000.0 / 3.0;
     config.realtime_priority = 0;
     config.realtime_cpu = 3;
@@ -180,6 +186,8 @@ TEST_F(ControllerConfigFile, ComesBackFromItsOwnWriting) {
     EXPECT_EQ(read.law, config.law);
     EXPECT_EQ(read.interface, config.interface);
     EXPECT_EQ(read.bit_rate_bit_s, config.bit_rate_bit_s);
+    EXPECT_EQ(read.expect_remote, config.expect_remote);
+    EXPECT_EQ(read.link_socket_path, config.link_socket_path);
     EXPECT_EQ(read.rate_Hz, config.rate_Hz);
     EXPECT_EQ(read.period_ns(), 3'000'000);
     EXPECT_EQ(read.realtime_priority, config.realtime_priority);

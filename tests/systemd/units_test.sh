@@ -6,7 +6,7 @@ claim=${1:-} build=${2:-}
 repository=$(realpath -- "$(dirname -- "$0")/../..")
 scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
-units=(steadyboom-controller.service steadyboom-telemetry.service steadyboom-command.socket)
+units=(steadyboom-controller.service steadyboom-can@can0.service steadyboom-telemetry.service steadyboom-command.socket)
 
 refute() {
     echo "FAILED: $*"
@@ -40,12 +40,15 @@ ExposureStaysWithinItsLimits() {
     install_into_stage
     exposure_within 8 "$installed/steadyboom-controller.service" || refute "the controller is exposed above 0.8"
     exposure_within 10 "$installed/steadyboom-telemetry.service" || refute "the telemetry is exposed above 1.0"
+    exposure_within 11 "$installed/steadyboom-can@.service" || refute "the link supervisor is exposed above 1.1"
 }
 LostProtectionExceedsTheExposureLimit() {
     install_into_stage
     sed -i '/^PrivateUsers=/d' "$installed"/*.service
     ! exposure_within 8 "$installed/steadyboom-controller.service" >/dev/null || refute "the controller's limit has slack"
     ! exposure_within 10 "$installed/steadyboom-telemetry.service" >/dev/null || refute "the telemetry's limit has slack"
+    sed -i '/^NoNewPrivileges=/d' "$installed/steadyboom-can@.service"
+    ! exposure_within 11 "$installed/steadyboom-can@.service" >/dev/null || refute "the link supervisor's limit has slack"
 }
 
 EveryAccountThatAUnitNamesIsMade() {
@@ -86,7 +89,7 @@ ControllerRunsUnderItsUnitWithRealTimePriorityAndNoPrivilege() {
         unit=steadyboom-controller.service
         refute() { echo "FAILED: $*"; systemctl status --no-pager --full --lines=30 $unit steadyboom-command.socket; exit 1; }
         cp -r "$1"/. / && systemd-sysusers && systemctl daemon-reload || refute "installation"
-        systemctl start $unit || refute "it does not start"
+        systemctl start steadyboom-can@can0.service $unit || refute "it does not start"
         main=$(systemctl show --value -p MainPID $unit)
         chrt -p "$main" | grep -q "policy: SCHED_FIFO" && chrt -p "$main" | grep -q "priority: 80" ||
             refute "scheduling: $(chrt -p "$main")"
@@ -98,6 +101,11 @@ ControllerRunsUnderItsUnitWithRealTimePriorityAndNoPrivilege() {
         grep -q "^VmLck:.* 0 kB" /proc/"$main"/status && refute "no memory is locked"
         timeout 10 candump -n 20 can0 >/dev/null || refute "nothing on the bus"
         steadyboomctl status || refute "no answer on the socket from systemd"
+        for try in {1..100}; do steadyboomctl status | grep -q "not watched" || break; sleep 0.1; done
+        ! steadyboomctl status | grep "not watched" || refute "the link supervisor is not heard"
+        supervisor=$(systemctl show --value -p MainPID steadyboom-can@can0.service)
+        grep -q "^CapEff:.*0000001000$" /proc/"$supervisor"/status || refute "$(grep Cap /proc/"$supervisor"/status)"
+        grep -q "^CapBnd:.*0000001000$" /proc/"$supervisor"/status || refute "$(grep Cap /proc/"$supervisor"/status)"
         sleep 5
         [ "$(systemctl is-active $unit)$(systemctl show --value -p NRestarts $unit)" = active0 ] ||
             refute "it does not outlive its watchdog"

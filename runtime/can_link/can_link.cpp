@@ -1,0 +1,144 @@
+#include "runtime/can_link/can_link.hpp"
+
+#include <libsocketcan.h>
+#include <linux/can/netlink.h>
+#include <linux/sockios.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "drivers/socketcan_bus.hpp"
+#include "runtime/file_descriptor.hpp"
+
+namespace steadyboom::runtime {
+
+namespace {
+
+std::optional<ifreq> ask_interface(const std::string& interface, unsigned long what) noexcept {
+    const FileDescriptor any(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    ifreq request{};
+    if (interface.size() >= sizeof request.ifr_name) {
+        return {};
+    }
+    std::ranges::copy(interface, std::begin(request.ifr_name));
+    return ioctl(any.get(), what, &request) == 0 ? std::optional(request) : std::nullopt;
+}
+
+LinkCondition condition_of(const std::string& interface) noexcept {
+    int state = 0;
+    if (can_get_state(interface.c_str(), &state) != 0) {
+        return LinkCondition::unknown;
+    }
+    switch (state) {
+        case CAN_STATE_ERROR_ACTIVE:
+            return LinkCondition::active;
+        case CAN_STATE_ERROR_WARNING:
+            return LinkCondition::warning;
+        case CAN_STATE_ERROR_PASSIVE:
+            return LinkCondition::passive;
+        case CAN_STATE_BUS_OFF:
+            return LinkCondition::bus_off;
+        case CAN_STATE_STOPPED:
+        case CAN_STATE_SLEEPING:
+            return LinkCondition::stopped;
+        default:
+            return LinkCondition::unknown;
+    }
+}
+
+const char* words(LinkCondition condition) {
+    switch (condition) {
+        case LinkCondition::unknown:
+            return "state not known";
+        case LinkCondition::absent:
+            return "there is no such interface";
+        case LinkCondition::stopped:
+            return "stopped";
+        case LinkCondition::active:
+            return "error-active";
+        case LinkCondition::warning:
+            return "error-warning";
+        case LinkCondition::passive:
+            return "error-passive";
+        case LinkCondition::bus_off:
+            return "bus-off";
+    }
+    return "?";
+}
+
+}  // namespace
+
+LinkReport read_link(const std::string& interface, const LinkSetUp& wanted) noexcept {
+    LinkReport report;
+    const auto queue = ask_interface(interface, SIOCGIFTXQLEN);
+    if (!queue) {
+        report.condition = LinkCondition::absent;
+        return report;
+    }
+    report.queue_frames = static_cast<std::uint32_t>(queue->ifr_qlen);
+    report.virtual_bus = drivers::is_virtual_driver(drivers::interface_driver(interface));
+    if (report.virtual_bus) {
+        return report;
+    }
+    report.condition = condition_of(interface);
+    can_bittiming timing{};
+    if (can_get_bittiming(interface.c_str(), &timing) == 0) {
+        report.bit_rate_bit_s = timing.bitrate;
+    }
+    if (can_get_restart_ms(interface.c_str(), &report.restart_ms) != 0) {
+        report.restart_ms = 0;
+    }
+    can_berr_counter errors{};
+    if (can_get_berr_counter(interface.c_str(), &errors) == 0) {
+        report.transmit_error_count = errors.txerr;
+        report.receive_error_count = errors.rxerr;
+    }
+    const auto note = [&](bool is_one, LinkProblem problem) {
+        report.problems = static_cast<std::uint8_t>(report.problems | (is_one ? problem : 0));
+    };
+    note(report.bit_rate_bit_s != wanted.bit_rate_bit_s, link_problem_bit_rate);
+    note(report.restart_ms != 0, link_problem_restart_ms);
+    note(report.queue_frames != wanted.queue_frames, link_problem_queue);
+    return report;
+}
+
+bool restart_link(const std::string& interface) noexcept {
+    return can_do_restart(interface.c_str()) == 0 ||
+           (can_do_stop(interface.c_str()) == 0 && can_do_start(interface.c_str()) == 0);
+}
+
+std::string in_words(const std::string& interface, const LinkReport& report, const LinkSetUp& wanted) {
+    const std::string name = interface + ": ";
+    if (report.condition == LinkCondition::absent) {
+        return name + words(report.condition);
+    }
+    if (report.virtual_bus) {
+        return name + "a virtual bus, without state or bit rate";
+    }
+    std::string text = name + words(report.condition) + ", " + std::to_string(report.bit_rate_bit_s) +
+                       " bit/s, queue " + std::to_string(report.queue_frames) + " frames, restart-ms " +
+                       std::to_string(report.restart_ms) + ", error counts " +
+                       std::to_string(report.transmit_error_count) + " sending and " +
+                       std::to_string(report.receive_error_count) + " receiving";
+    if ((report.problems & link_problem_bit_rate) != 0) {
+        text += "; the configuration says " + std::to_string(wanted.bit_rate_bit_s) + " bit/s: ip link set " +
+                interface + " down && ip link set " + interface + " type can bitrate " +
+                std::to_string(wanted.bit_rate_bit_s);
+    }
+    if ((report.problems & link_problem_restart_ms) != 0) {
+        text += "; the kernel must not restart it by itself: ip link set " + interface + " type can restart-ms 0";
+    }
+    if ((report.problems & link_problem_queue) != 0) {
+        text += "; the queue must hold one tick's frames: ip link set " + interface + " txqueuelen " +
+                std::to_string(wanted.queue_frames);
+    }
+    if (report.given_up) {
+        text += "; restarts did not help: given up until it is seen well again";
+    }
+    return text;
+}
+
+}  // namespace steadyboom::runtime

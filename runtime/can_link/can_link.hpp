@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "runtime/can_link/link_message.hpp"
+
+namespace steadyboom::runtime {
+
+/// What the configuration asks of an interface.
+struct LinkSetUp {
+    std::uint32_t bit_rate_bit_s = 500'000;
+    std::uint32_t queue_frames = 4;  ///< one tick's frames
+};
+
+/// Asks the kernel about an interface by libsocketcan, which takes milliseconds: not for the tick. A virtual interface
+/// has neither state nor bit rate and is as it must be.
+[[nodiscard]] LinkReport read_link(const std::string& interface, const LinkSetUp& wanted) noexcept;
+
+/// Restarts a link that is bus-off, by the driver's own restart or else by taking it down and up. Needs CAP_NET_ADMIN.
+[[nodiscard]] bool restart_link(const std::string& interface) noexcept;
+
+/// One line: "can0: error-active, 500000 bit/s, queue 4 frames, ...", with a remedy for each problem.
+[[nodiscard]] std::string in_words(const std::string& interface, const LinkReport& report, const LinkSetUp& wanted);
+
+}  // namespace steadyboom::runtime
