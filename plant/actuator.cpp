@@ -39,6 +39,23 @@ double Actuator::piston_rate_m_s(double valve_opening_m, double pendent_tension_
     return at_stop ? 0.0 : rate_m_s;
 }
 
+PistonRateSlopes Actuator::piston_rate_slopes(double valve_opening_m, double pendent_tension_N, double rate_m_s,
+                                              double piston_m) const noexcept {
+    if (std::abs(piston_m) >= piston_travel_m_ && rate_m_s == 0.0) {
+        return {0.0, 0.0};
+    }
+    const double load_pressure = load_pressure_Pa(pendent_tension_N);
+    const bool taut = pendent_tension_N > 0.0;
+    const double c_m2 = taut ? oil_compliance_m2_ : 0.0;
+    const double drop_Pa = supply_pressure_Pa_ - std::copysign(load_pressure, valve_opening_m);
+    const double flow_slope = valve_model_ == ValveModel::nonlinear && drop_Pa > 0.0
+                                  ? -orifice_gain_ * std::abs(valve_opening_m) * 0.5 / std::sqrt(drop_Pa)
+                                  : 0.0;
+    const double pressure_slope = taut ? (flow_slope - leakage_m3_s_Pa_) * inverse_piston_area_1_m2_ : 0.0;
+    return {.pendent_tension = pressure_slope / (piston_area_m2_ + c_m2),
+            .pendent_rate = -c_m2 / (piston_area_m2_ + c_m2)};
+}
+
 double Actuator::hydraulic_power_W(double valve_opening_m, double pendent_tension_N,
                                    double equilibrium_tension_N) const noexcept {
     return load_pressure_Pa(pendent_tension_N - equilibrium_tension_N) * flow_gain_m2_s_ * valve_opening_m;

@@ -4,6 +4,12 @@
 
 namespace steadyboom::plant {
 
+/// How the piston's rate changes.
+struct PistonRateSlopes {
+    double pendent_tension;  ///< with T_P, m/s/N
+    double pendent_rate;     ///< with L_p', dimensionless
+};
+
 /// Valve-controlled piston in the pendent line (thesis chapter 6).
 ///
 ///     A_p X_p' + (V_t / 4 beta_e) P_L' + C_tp P_L = Q_L,   A_p P_L = T_P                                  (6-20, 6-5)
@@ -22,6 +28,10 @@ class Actuator {
     /// piston does not move outwards.
     [[nodiscard]] double piston_rate_m_s(double valve_opening_m, double pendent_tension_N, double pendent_rate_m_s,
                                          double piston_m) const noexcept;
+
+    /// Derivatives of piston_rate_m_s(); `rate_m_s` is what it returned, 0 at an end stop.
+    [[nodiscard]] PistonRateSlopes piston_rate_slopes(double valve_opening_m, double pendent_tension_N, double rate_m_s,
+                                                      double piston_m) const noexcept;
 
     [[nodiscard]] double load_pressure_Pa(double pendent_tension_N) const noexcept {
         return pendent_tension_N * inverse_piston_area_1_m2_;

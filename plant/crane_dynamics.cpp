@@ -73,6 +73,27 @@ CraneDynamics::CraneDynamics(const CraneParameters& parameters)
     free_pendent_length_m_ = pendent(kinematics(unstretched), 0.0).length_m;
 }
 
+CraneCalibration CraneDynamics::calibration() const noexcept {
+    return {.load_mass_kg = parameters_.structure.load_mass_kg,
+            .free_pendent_length_m = free_pendent_length_m_,
+            .pendent_stiffness_N_m = parameters_.ropes.pendent_stiffness_N_m,
+            .load_line_length_m = parameters_.ropes.load_line_length_m,
+            .load_line_stiffness_N_m = parameters_.ropes.load_line_stiffness_N_m,
+            .soil_shear_modulus_Pa = parameters_.soil.shear_modulus_Pa};
+}
+
+void CraneDynamics::calibrate(const CraneCalibration& calibration) noexcept {
+    total_mass_kg_ += calibration.load_mass_kg - parameters_.structure.load_mass_kg;
+    parameters_.structure.load_mass_kg = calibration.load_mass_kg;
+    free_pendent_length_m_ = calibration.free_pendent_length_m;
+    parameters_.ropes = {.load_line_length_m = calibration.load_line_length_m,
+                         .load_line_stiffness_N_m = calibration.load_line_stiffness_N_m,
+                         .pendent_stiffness_N_m = calibration.pendent_stiffness_N_m};
+    parameters_.soil.shear_modulus_Pa = calibration.soil_shear_modulus_Pa;
+    soil_ = Soil(parameters_.soil);
+    actuator_ = Actuator(parameters_.actuator, parameters_.ropes);
+}
+
 CraneDynamics::Kinematics CraneDynamics::kinematics(const Coordinates& p) const noexcept {
     const StructureParameters& s = parameters_.structure;
     const double s2 = std::sin(p[phi2_rad]);

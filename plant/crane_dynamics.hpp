@@ -26,6 +26,16 @@ struct CranePoints {
     Eigen::Vector2d link_centres[3];
 };
 
+/// What differs from one lift or site to the next and is found out on the standing or moving crane.
+struct CraneCalibration {
+    double load_mass_kg;             ///< m_L
+    double free_pendent_length_m;    ///< L_p(t0)
+    double pendent_stiffness_N_m;    ///< K_WRP
+    double load_line_length_m;       ///< R9(t0)
+    double load_line_stiffness_N_m;  ///< K_WRL
+    double soil_shear_modulus_Pa;    ///< G
+};
+
 /// The crane of the thesis with seven degrees of freedom and the piston, model page sections 1 to 4.
 ///
 ///     M(p) p'' = Q(p, p', X_p),   M = sum m J^T J + inertia,   Q = Q_forces - sum m J^T (J' p')
@@ -53,6 +63,10 @@ class CraneDynamics {
 
     /// L_p(t0): unstretched pendent, geometry at phi6(t0) with phi2 = q1 = q2 = 0.
     [[nodiscard]] double free_pendent_length_m() const noexcept { return free_pendent_length_m_; }
+
+    [[nodiscard]] CraneCalibration calibration() const noexcept;
+    /// Replaces these parameters. The caller keeps them positive and finite.
+    void calibrate(const CraneCalibration& calibration) noexcept;
 
     [[nodiscard]] const CraneParameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const Actuator& actuator() const noexcept { return actuator_; }

@@ -58,4 +58,52 @@ SoilReaction Soil::reaction(double height_m, double tilt_rad, double sin_phi2, d
                            soil.rocking_damping_N_m_s_rad * tilt_rate_rad_s};
 }
 
+SoilSlopes Soil::slopes(double height_m, double tilt_rad, double sin_phi2, double cos_phi2, double height_rate_m_s,
+                        double tilt_rate_rad_s) const noexcept {
+    const double beta = contact_fraction(height_m, tilt_rad, sin_phi2);
+    const Coefficients soil = coefficients(beta);
+    const double e_m = -std::copysign(track_half_length_m_ * (1.0 - beta), tilt_rad);
+    const double sink_m = height_m + e_m * tilt_rad;
+    const double sink_rate_m_s = height_rate_m_s + e_m * tilt_rate_rad_s;
+    const double vertical_N = -soil.vertical_stiffness_N_m * sink_m - soil.vertical_damping_N_s_m * sink_rate_m_s;
+    const bool pressed = vertical_N > 0.0;
+
+    // beta moves only while the edge of the contact lies under the track.
+    double beta_height = 0.0;
+    double beta_tilt = 0.0;
+    double K_V_beta = 0.0;
+    if (beta > 0.0 && beta < 1.0) {
+        const double lever_m = 2.0 * track_half_length_m_ * std::abs(sin_phi2);
+        beta_height = -1.0 / lever_m;
+        beta_tilt = height_m * cos_phi2 / (lever_m * sin_phi2);
+        K_V_beta = 0.5 * soil.vertical_stiffness_N_m / beta;
+    }
+    const double C_V_beta = full_contact_.vertical_damping_N_s_m;
+    const double e_beta = std::copysign(track_half_length_m_, tilt_rad);
+    const double root = std::sqrt(beta);
+    const double K_R_beta = 2.25 * full_contact_.rocking_stiffness_N_m_rad * beta * std::sqrt(root);
+    const double C_R_beta = 3.0 * full_contact_.rocking_damping_N_m_s_rad * beta * beta;
+
+    const double F_e = -soil.vertical_stiffness_N_m * tilt_rad - soil.vertical_damping_N_s_m * tilt_rate_rad_s;
+    const double F_beta = -K_V_beta * sink_m - C_V_beta * sink_rate_m_s + F_e * e_beta;
+    SoilSlopes result{};
+    if (pressed) {
+        result.vertical = {
+            .height = -soil.vertical_stiffness_N_m + F_beta * beta_height,
+            .tilt = -soil.vertical_stiffness_N_m * e_m + F_beta * beta_tilt,
+            .height_rate = -soil.vertical_damping_N_s_m,
+            .tilt_rate = -soil.vertical_damping_N_s_m * e_m,
+            .log_modulus = -soil.vertical_stiffness_N_m * sink_m - 0.5 * soil.vertical_damping_N_s_m * sink_rate_m_s};
+    }
+    const double rocking_beta =
+        (pressed ? vertical_N * e_beta : 0.0) - K_R_beta * tilt_rad - C_R_beta * tilt_rate_rad_s;
+    result.rocking = {.height = result.vertical.height * e_m + rocking_beta * beta_height,
+                      .tilt = result.vertical.tilt * e_m + rocking_beta * beta_tilt - soil.rocking_stiffness_N_m_rad,
+                      .height_rate = result.vertical.height_rate * e_m,
+                      .tilt_rate = result.vertical.tilt_rate * e_m - soil.rocking_damping_N_m_s_rad,
+                      .log_modulus = result.vertical.log_modulus * e_m - soil.rocking_stiffness_N_m_rad * tilt_rad -
+                                     0.5 * soil.rocking_damping_N_m_s_rad * tilt_rate_rad_s};
+    return result;
+}
+
 }  // namespace steadyboom::plant

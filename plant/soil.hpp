@@ -12,6 +12,19 @@ struct SoilReaction {
     double rocking_N_m;       ///< generalized force on phi2, counter-clockwise
 };
 
+/// How one component of the soil's reaction changes, N or N m per unit of each.
+struct SoilSlope {
+    double height;       ///< R1
+    double tilt;         ///< phi2
+    double height_rate;  ///< R1'
+    double tilt_rate;    ///< phi2'
+    double log_modulus;  ///< ln G: stiffness goes with G, damping with its root
+};
+struct SoilSlopes {
+    SoilSlope vertical;  ///< of F_V
+    SoilSlope rocking;   ///< of the generalized force on phi2
+};
+
 /// Elastic half-space under a track that may tilt and lift (thesis 3.1.3, misprints decided on the model page):
 ///
 ///     f    = -R1 / sin|phi2| within [-d_t, d_t],   beta = (1 + f/d_t) / 2,   e = -sign(phi2) d_t (1 - beta)
@@ -26,6 +39,10 @@ class Soil {
     /// `sin_phi2` is sin(phi2); it is passed because the caller has it.
     [[nodiscard]] SoilReaction reaction(double height_m, double tilt_rad, double sin_phi2, double height_rate_m_s,
                                         double tilt_rate_rad_s) const noexcept;
+
+    /// Derivatives of reaction(), within the mode that it is in.
+    [[nodiscard]] SoilSlopes slopes(double height_m, double tilt_rad, double sin_phi2, double cos_phi2,
+                                    double height_rate_m_s, double tilt_rate_rad_s) const noexcept;
 
     /// beta for a track plane at `height_m` (R1) and sin(phi2).
     [[nodiscard]] double contact_fraction(double height_m, double tilt_rad, double sin_phi2) const noexcept;
