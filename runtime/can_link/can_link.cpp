@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "drivers/socketcan_bus.hpp"
 #include "runtime/file_descriptor.hpp"
@@ -71,47 +72,50 @@ const char* words(LinkCondition condition) {
 
 }  // namespace
 
-LinkReport read_link(const std::string& interface, const LinkSetUp& wanted) noexcept {
+CanLink::CanLink(std::string interface, LinkSetUp wanted) : interface_(std::move(interface)), wanted_(wanted) {}
+
+LinkReport CanLink::read() noexcept {
     LinkReport report;
-    const auto queue = ask_interface(interface, SIOCGIFTXQLEN);
+    const auto queue = ask_interface(interface_, SIOCGIFTXQLEN);
     if (!queue) {
         report.condition = LinkCondition::absent;
         return report;
     }
     report.queue_frames = static_cast<std::uint32_t>(queue->ifr_qlen);
-    report.virtual_bus = drivers::is_virtual_driver(drivers::interface_driver(interface));
+    report.virtual_bus = drivers::is_virtual_driver(drivers::interface_driver(interface_));
     if (report.virtual_bus) {
         return report;
     }
-    report.condition = condition_of(interface);
+    report.condition = condition_of(interface_);
     can_bittiming timing{};
-    if (can_get_bittiming(interface.c_str(), &timing) == 0) {
+    if (can_get_bittiming(interface_.c_str(), &timing) == 0) {
         report.bit_rate_bit_s = timing.bitrate;
     }
-    if (can_get_restart_ms(interface.c_str(), &report.restart_ms) != 0) {
+    if (can_get_restart_ms(interface_.c_str(), &report.restart_ms) != 0) {
         report.restart_ms = 0;
     }
     can_berr_counter errors{};
-    if (can_get_berr_counter(interface.c_str(), &errors) == 0) {
+    has_error_counts_ = has_error_counts_ && can_get_berr_counter(interface_.c_str(), &errors) == 0;
+    if (has_error_counts_) {
         report.transmit_error_count = errors.txerr;
         report.receive_error_count = errors.rxerr;
     }
     const auto note = [&](bool is_one, LinkProblem problem) {
         report.problems = static_cast<std::uint8_t>(report.problems | (is_one ? problem : 0));
     };
-    note(report.bit_rate_bit_s != wanted.bit_rate_bit_s, link_problem_bit_rate);
+    note(report.bit_rate_bit_s != wanted_.bit_rate_bit_s, link_problem_bit_rate);
     note(report.restart_ms != 0, link_problem_restart_ms);
-    note(report.queue_frames != wanted.queue_frames, link_problem_queue);
+    note(report.queue_frames != wanted_.queue_frames, link_problem_queue);
     return report;
 }
 
-bool restart_link(const std::string& interface) noexcept {
-    return can_do_restart(interface.c_str()) == 0 ||
-           (can_do_stop(interface.c_str()) == 0 && can_do_start(interface.c_str()) == 0);
+bool CanLink::restart() noexcept {
+    return can_do_restart(interface_.c_str()) == 0 ||
+           (can_do_stop(interface_.c_str()) == 0 && can_do_start(interface_.c_str()) == 0);
 }
 
-std::string in_words(const std::string& interface, const LinkReport& report, const LinkSetUp& wanted) {
-    const std::string name = interface + ": ";
+std::string CanLink::in_words(const LinkReport& report) const {
+    const std::string name = interface_ + ": ";
     if (report.condition == LinkCondition::absent) {
         return name + words(report.condition);
     }
@@ -124,16 +128,16 @@ std::string in_words(const std::string& interface, const LinkReport& report, con
                        std::to_string(report.transmit_error_count) + " sending and " +
                        std::to_string(report.receive_error_count) + " receiving";
     if ((report.problems & link_problem_bit_rate) != 0) {
-        text += "; the configuration says " + std::to_string(wanted.bit_rate_bit_s) + " bit/s: ip link set " +
-                interface + " down && ip link set " + interface + " type can bitrate " +
-                std::to_string(wanted.bit_rate_bit_s);
+        text += "; the configuration says " + std::to_string(wanted_.bit_rate_bit_s) + " bit/s: ip link set " +
+                interface_ + " down && ip link set " + interface_ + " type can bitrate " +
+                std::to_string(wanted_.bit_rate_bit_s);
     }
     if ((report.problems & link_problem_restart_ms) != 0) {
-        text += "; the kernel must not restart it by itself: ip link set " + interface + " type can restart-ms 0";
+        text += "; the kernel must not restart it by itself: ip link set " + interface_ + " type can restart-ms 0";
     }
     if ((report.problems & link_problem_queue) != 0) {
-        text += "; the queue must hold one tick's frames: ip link set " + interface + " txqueuelen " +
-                std::to_string(wanted.queue_frames);
+        text += "; the queue must hold one tick's frames: ip link set " + interface_ + " txqueuelen " +
+                std::to_string(wanted_.queue_frames);
     }
     if (report.given_up) {
         text += "; restarts did not help: given up until it is seen well again";

@@ -13,14 +13,25 @@ struct LinkSetUp {
     std::uint32_t queue_frames = 4;  ///< one tick's frames
 };
 
-/// Asks the kernel about an interface by libsocketcan, which takes milliseconds: not for the tick. A virtual interface
-/// has neither state nor bit rate and is as it must be.
-[[nodiscard]] LinkReport read_link(const std::string& interface, const LinkSetUp& wanted) noexcept;
+/// One interface as the kernel shows it by libsocketcan, whose calls take milliseconds: not for the tick. A virtual
+/// interface has neither state nor bit rate and is as it must be.
+class CanLink {
+  public:
+    CanLink(std::string interface, LinkSetUp wanted);
 
-/// Restarts a link that is bus-off, by the driver's own restart or else by taking it down and up. Needs CAP_NET_ADMIN.
-[[nodiscard]] bool restart_link(const std::string& interface) noexcept;
+    [[nodiscard]] LinkReport read() noexcept;
 
-/// One line: "can0: error-active, 500000 bit/s, queue 4 frames, ...", with a remedy for each problem.
-[[nodiscard]] std::string in_words(const std::string& interface, const LinkReport& report, const LinkSetUp& wanted);
+    /// Restarts a link that is bus-off, by the driver's own restart or else by taking it down and up. Needs
+    /// CAP_NET_ADMIN.
+    [[nodiscard]] bool restart() noexcept;
+
+    /// One line: "can0: error-active, 500000 bit/s, queue 4 frames, ...", with a remedy for each problem.
+    [[nodiscard]] std::string in_words(const LinkReport& report) const;
+
+  private:
+    std::string interface_;
+    LinkSetUp wanted_;
+    bool has_error_counts_ = true;  ///< until the driver turns out not to tell: libsocketcan complains at each try
+};
 
 }  // namespace steadyboom::runtime

@@ -25,15 +25,15 @@ int look_after(const runtime::ControllerConfig& config) {
     if (config.link_socket_path.empty()) {
         throw runtime::ConfigError("bus.link_socket_path is empty: name the socket to report at");
     }
-    const runtime::LinkSetUp wanted{.bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s),
-                                    .queue_frames = drivers::CraneNetwork::most_frames};
+    runtime::CanLink link(config.interface, {.bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s),
+                                             .queue_frames = drivers::CraneNetwork::most_frames});
     runtime::MonotonicClock clock;
     runtime::LinkServer server(
         {.socket_path = config.link_socket_path,
-         .read = [&] { return runtime::read_link(config.interface, wanted); },
+         .read = [&] { return link.read(); },
          .restart =
              [&] {
-                 const bool done = runtime::restart_link(config.interface);
+                 const bool done = link.restart();
                  spdlog::warn("{}: bus-off, {}", config.interface, done ? "restarted" : "the kernel refuses a restart");
                  return done;
              },
@@ -41,8 +41,7 @@ int look_after(const runtime::ControllerConfig& config) {
              [&](const runtime::LinkReport& report) {
                  const bool well = report.problems == 0 && report.condition != runtime::LinkCondition::absent &&
                                    report.condition < runtime::LinkCondition::warning;
-                 spdlog::log(well ? spdlog::level::info : spdlog::level::warn, "{}",
-                             in_words(config.interface, report, wanted));
+                 spdlog::log(well ? spdlog::level::info : spdlog::level::warn, "{}", link.in_words(report));
              }});
     bool ready = false;
     while (!runtime::stop_requested().load(std::memory_order_relaxed)) {
