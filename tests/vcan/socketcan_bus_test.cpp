@@ -20,15 +20,13 @@
 #include <gtest/gtest.h>
 
 #include "runtime/realtime_section.hpp"
+#include "tests/vcan/interfaces.hpp"
 
 namespace steadyboom::drivers {
 namespace {
 
+using test_support::run;
 using ::testing::HasSubstr;
-
-void run(const std::string& command) {
-    ASSERT_EQ(std::system(command.c_str()), 0) << command;
-}
 
 /// Interfaces of this test's own, so that taking them down disturbs nobody.
 class SocketCanBusTest : public ::testing::Test {
@@ -43,16 +41,9 @@ class SocketCanBusTest : public ::testing::Test {
         return bus.receive(frames_);
     }
 
-    /// Receives until `expected` frames are there: the kernel may deliver after the send has returned. Ends at once
-    /// when they are, after 10 s without any when they are not.
     std::size_t await(SocketCanBus& bus, std::size_t expected) {
-        std::size_t count = 0;
-        pollfd ready{.fd = bus.fd(), .events = POLLIN, .revents = 0};
-        while (count < expected && ::poll(&ready, 1, 10'000) == 1) {
-            const runtime::RealtimeSection no_allocation;
-            count += bus.receive(std::span(frames_).subspan(count));
-        }
-        return count;
+        const runtime::RealtimeSection no_allocation;
+        return test_support::await(bus, frames_, expected);
     }
 
     static SendResult send(SocketCanBus& bus, const std::vector<CanFrame>& frames) {
