@@ -20,5 +20,8 @@ void add_simulate_command(CLI::App& app, Action& selected);
 void add_equilibrium_command(CLI::App& app, Action& selected);
 void add_run_command(CLI::App& app, Action& selected);
 void add_reproduce_command(CLI::App& app, Action& selected);
+void add_dbc_command(CLI::App& app, Action& selected);
+void add_can_table_command(CLI::App& app, Action& selected);
+void add_bus_monitor_command(CLI::App& app, Action& selected);
 
 }  // namespace steadyboom::hil

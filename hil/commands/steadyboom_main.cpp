@@ -21,6 +21,9 @@ int main(int argc, char** argv) {
     hil::add_equilibrium_command(app, selected);
     hil::add_run_command(app, selected);
     hil::add_reproduce_command(app, selected);
+    hil::add_dbc_command(app, selected);
+    hil::add_can_table_command(app, selected);
+    hil::add_bus_monitor_command(app, selected);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -214,4 +214,93 @@ TEST_F(CommandLine, ControllerAndPlantRefuseABadConfigurationBeforeAnythingElse)
     }
 }
 
+TEST_F(CommandLine, CanTableListsEveryDeviceAndTheBusLoad) {
+    const Outcome text = steadyboom("can-table");
+    ASSERT_EQ(text.exit_code, 0) << text.error;
+    EXPECT_THAT(text.out, HasSubstr("boom_inclinometer_tpdo1"));
+    EXPECT_THAT(text.out, HasSubstr("of 70 % allowed"));
+    const Outcome outcome = steadyboom("can-table --json");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(json.at("devices").size(), 8U);
+    EXPECT_NEAR(json.at("bus_load_nominal").get<double>(), 0.344, 0.0005);
+    EXPECT_GT(json.at("bus_load_worst_case").get<double>(), json.at("bus_load_nominal").get<double>());
+    EXPECT_GT(json.at("messages").size(), 20U);
+    const auto slower = nlohmann::json::parse(steadyboom("can-table --json --rate-hz 100 --bit-rate-kbit-s 250").out);
+    EXPECT_EQ(slower.at("period_ms"), 10.0);
+    EXPECT_EQ(slower.at("bit_rate_bit_s"), 250'000);
+}
+
+TEST_F(CommandLine, TheNetworkFileDecidesWhatTheTableAndTheDbcSay) {
+    const std::string rest =
+        "required = true\nconfigure = true\nheartbeat_ms = 100\nheartbeat_timeout_ms = 250\n"
+        "device_type = 404\nvendor_id = 0\nproduct_code = 0\n";
+    std::ofstream(folder_ / "network.toml") << "[device.load_pin]\nnode_id = 0x33\nprotection = \"e2e\"\n" << rest;
+    const auto json = nlohmann::json::parse(steadyboom("can-table --json --network network.toml").out);
+    EXPECT_EQ(json.at("devices").at(3).at("node_id"), 0x33);
+    EXPECT_EQ(json.at("devices").at(3).at("protection"), "e2e");
+    ASSERT_EQ(steadyboom("dbc --network network.toml --out network.dbc").exit_code, 0);
+    EXPECT_EQ(content(folder_ / "network.dbc"), steadyboom("dbc --network network.toml").out);
+    EXPECT_TRUE(content(folder_ / "network.dbc").find("BO_ 435 load_pin_tpdo1: 7 load_pin\n") != std::string::npos);
+
+    std::ofstream(folder_ / "bad.toml") << "[device.load_pin]\nnode_id = 200\nprotection = \"e2e\"\n" << rest;
+    for (const char* command : {"can-table", "dbc --out bad.dbc", "bus-monitor network.dbc"}) {
+        const Outcome outcome = steadyboom(std::string(command) + " --network bad.toml");
+        EXPECT_EQ(outcome.exit_code, 2) << command;
+        EXPECT_THAT(outcome.error, HasSubstr("bad.toml:2: device.load_pin.node_id = 200")) << command;
+        EXPECT_EQ(lines_of(outcome.error).size(), 1U) << outcome.error;
+        EXPECT_EQ(outcome.out, "") << command;
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "bad.dbc"));
+}
+
+TEST_F(CommandLine, BusMonitorReadsTheLogOfARun) {
+    ASSERT_EQ(steadyboom("run case-a --law joint-deflection --duration-s 1 --out run").exit_code, 0);
+    const Outcome outcome = steadyboom("bus-monitor run/can.log --json");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_NEAR(json.at("duration_s").get<double>(), 6.0, 0.01);
+    EXPECT_EQ(json.at("unknown_id_frames"), 0);
+    std::size_t operational = 0;
+    for (const auto& device : json.at("devices")) {
+        operational += device.at("state") == "operational" ? 1U : 0U;
+        for (const auto& message : device.at("messages")) {
+            EXPECT_EQ(message.at("wrong_length_frames"), 0) << message.at("name");
+            EXPECT_EQ(message.at("out_of_range_values"), 0) << message.at("name");
+        }
+    }
+    EXPECT_EQ(operational, 8U);
+    const auto& angle = json.at("devices").at(2).at("messages").at(0);
+    EXPECT_NEAR(angle.at("rate_Hz").get<double>(), 200.0, 0.5);
+    EXPECT_NEAR(angle.at("values").at("boom_angle").at("value").get<double>(), 59.9, 1.0);
+
+    // No terminal: one table, no colours.
+    const Outcome text = steadyboom("bus-monitor run/can.log --duration-s 2");
+    EXPECT_THAT(text.out, HasSubstr("run/can.log: 2.0 s"));
+    EXPECT_THAT(text.out, HasSubstr("boom_angle 59."));
+    EXPECT_EQ(text.out.find('\033'), std::string::npos);
+}
+
+TEST_F(CommandLine, BusMonitorNamesLineAndColumnOfWhatItCannotRead) {
+    std::ofstream(folder_ / "bad.log") << "(0000000000.000000) can0 080#01\n(0000000000.005000) can0 080#0\n"
+                                          "(0000000000.010000) can0 080#03\n";
+    const Outcome outcome = steadyboom("bus-monitor bad.log");
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.error, HasSubstr("bad.log:2:31: half a byte"));
+    EXPECT_EQ(lines_of(outcome.error).size(), 1U) << outcome.error;
+    EXPECT_EQ(outcome.out, "");
+
+    // A log that was cut while it was written is read to there.
+    std::ofstream(folder_ / "cut.log") << "(0000000000.000000) can0 080#01\n(0000000000.005000) can0 0";
+    const Outcome cut = steadyboom("bus-monitor cut.log --json");
+    ASSERT_EQ(cut.exit_code, 0) << cut.error;
+    EXPECT_EQ(nlohmann::json::parse(cut.out).at("cut_lines"), 1);
+
+    for (const char* source : {"nosuchcan0", "nosuch/can.log", "."}) {
+        const Outcome missing = steadyboom(std::string("bus-monitor ") + source);
+        EXPECT_EQ(missing.exit_code, 2) << source;
+        EXPECT_THAT(missing.error, HasSubstr("neither a network interface nor a file")) << source;
+    }
+}
+
 }  // namespace
