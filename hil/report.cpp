@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 
 #include "hil/figure_table.hpp"
-#include "hil/html_text.hpp"
+#include "hil/html_page.hpp"
 #include "hil/plot.hpp"
 #include "hil/whole_file.hpp"
 #include "plant/energy.hpp"
@@ -60,17 +60,6 @@ const Look& look_of(const RunResult& run) {
 }
 
 constexpr std::string_view style = R"(
-:root{color-scheme:light dark;--paper:#fcfcfa;--ink:#1d2329;--soft:#5c6670;--line:#d9dcdf;--panel:#fff;--tint:#e8f1f8;
---accent:#1079bd}
-@media (prefers-color-scheme:dark){:root{--paper:#14181c;--ink:#e4e7ea;--soft:#9aa4ad;--line:#343b42;--panel:#1a1f24;
---tint:#18303f;--accent:#5db4e6}}
-*{box-sizing:border-box}
-body{margin:0 auto;padding:2.2rem 1.1rem 3rem;max-width:74rem;background:var(--paper);color:var(--ink);
-font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif}
-h1{font-size:1.9rem;line-height:1.2;margin:0}
-h2{font-size:1.25rem;margin:2.6rem 0 .3rem}
-p{margin:.5rem 0;max-width:46rem}
-.soft,figcaption span,small{color:var(--soft)}
 .lead{font-size:1.13rem;margin-top:.9rem;max-width:52rem}
 .warn{border-left:4px solid #d55e00;padding:.3rem .8rem;background:var(--panel)}
 .tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,10rem),1fr));gap:.8rem;margin:1.4rem 0}
@@ -79,20 +68,12 @@ p{margin:.5rem 0;max-width:46rem}
 .intro{display:grid;grid-template-columns:minmax(0,24rem) minmax(0,1fr);gap:2rem;align-items:center;margin-top:1rem}
 .intro figure{max-width:24rem}
 .intro h2{margin-top:.5rem}
-.laws{display:flex;flex-wrap:wrap;gap:.2rem 1.3rem;margin:.3rem 0 .8rem;padding:0;list-style:none}
-.swatch{display:inline-block;width:1.5em;height:.28em;border-radius:2px;vertical-align:.22em;margin-right:.45em}
-.key{position:sticky;top:0;z-index:1;background:var(--paper);border-bottom:1px solid var(--line);padding:.45rem 0}
-.plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,29rem),1fr));gap:1.3rem 1.6rem}
-figure{margin:0;break-inside:avoid}
-figcaption{font-size:.95rem;margin:.2rem 0}
-figcaption span{margin-left:.4em}
-svg{display:block;width:100%;height:auto;font-family:inherit}
+.laws{margin:.3rem 0 .8rem;padding:0;list-style:none}
 .table{overflow-x:auto}
-table{border-collapse:collapse;font-variant-numeric:tabular-nums;min-width:min(100%,30rem)}
+table{font-variant-numeric:tabular-nums;min-width:min(100%,30rem)}
 .many{width:100%}
-th,td{padding:.28rem .7rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
+th,td{padding:.28rem .7rem;text-align:right;white-space:nowrap}
 th:first-child,td:first-child{text-align:left;padding-left:.2rem;position:sticky;left:0;background:var(--paper)}
-thead th{border-bottom:2px solid var(--ink);vertical-align:bottom}
 td small{display:inline-block;min-width:3.4em}
 .best{background:var(--tint)}
 td.least{font-weight:650}
@@ -100,18 +81,17 @@ dl{display:grid;grid-template-columns:max-content minmax(0,1fr);gap:.15rem 1.2re
 dt{color:var(--soft)}
 dd{margin:0}
 @media (max-width:52rem){.intro{grid-template-columns:minmax(0,1fr);gap:.5rem}.intro figure{margin:0 auto;width:100%}}
-@media (max-width:34rem){body{padding-top:1.2rem}h1{font-size:1.5rem}dl{grid-template-columns:minmax(0,1fr)}dd{margin-bottom:.4rem}.key{font-size:.85rem}
+@media (max-width:34rem){dl{grid-template-columns:minmax(0,1fr)}dd{margin-bottom:.4rem}
 th,td{padding:.28rem .45rem;font-size:.9rem}}
-@media print{:root{--paper:#fff;--ink:#000;--soft:#444;--line:#bbb;--panel:#fff;--tint:#eef4f8}
-body{font-size:10pt;padding:0;max-width:none}.key{position:static}
-.plots{grid-template-columns:1fr 1fr;gap:.6rem}.table{overflow:visible}h2{break-after:avoid}tr{break-inside:avoid}}
+@media print{.table{overflow:visible}}
 )";
 
 /// Everything the page says, put together piece by piece.
-class Report {
+class Report : HtmlPage {
   public:
     explicit Report(std::span<const RunResult> runs)
-        : runs_(runs),
+        : HtmlPage(runs.front().options.crane_case.name, style),
+          runs_(runs),
           crane_(runs.front().options.crane_case.crane),
           rest_(plant::find_equilibrium(crane_)),
           energy_(crane_, rest_.state),
@@ -120,12 +100,8 @@ class Report {
 
     std::string page() {
         const Case& shown = runs_.front().options.crane_case;
-        put("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-            "<title>Steadyboom: {0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n"
-            "<h1>How the crane comes to rest: {0}</h1>\n"
-            "<p class=\"soft\">{2}</p>\n",
-            html_text(shown.name), style, html_text(shown.description));
+        put("<header>\n<h1>How the crane comes to rest: {}</h1>\n<p class=\"soft\">{}</p>\n", html_text(shown.name),
+            html_text(shown.description));
         put_summary();
         put("</header>\n<main>\n");
         put_introduction();
@@ -136,16 +112,11 @@ class Report {
         put_observer();
         put("</main>\n<footer>\n");
         put_settings();
-        put("</footer>\n</body>\n</html>\n");
-        return fill_in_plots();
+        put("</footer>\n");
+        return std::move(*this).finished();
     }
 
   private:
-    template <typename... Values>
-    void put(fmt::format_string<Values...> format, Values&&... values) {
-        fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
-    }
-
     static const RunResult& best_run(std::span<const RunResult> runs) {
         return *std::ranges::min_element(runs, [](const RunResult& left, const RunResult& right) {
             return std::pair(!left.stayed_engaged, left.figures.residual_energy_J) <
@@ -216,10 +187,10 @@ class Report {
             "the mean over its last second.</p>\n"
             "<p>A good law brings the curves to zero soon, without slack ropes and with little power. The valve moves "
             "a piston in the pendent line: opening it raises or lowers the boom a little.</p>\n"
-            "<ul class=\"laws\" style=\"flex-direction:column\">\n");
+            "<ul class=\"laws\">\n");
         for (const RunResult& run : runs_) {
             const Look& look = look_of(run);
-            put("<li><i class=\"swatch\" style=\"background:{}\"></i><b>{}</b> <span class=\"soft\">{}</span></li>\n",
+            put("<li><i class=\"swatch\" style=\"border-color:{}\"></i><b>{}</b> <span class=\"soft\">{}</span></li>\n",
                 look.colour, look.title, look.words);
         }
         put("</ul>\n</div>\n</section>\n");
@@ -344,7 +315,7 @@ class Report {
             return runs_.size() > 1 && law_wins() && &run == &best_ ? "best" : "";
         };
         for (const RunResult& run : runs_) {
-            put("<th class=\"{}\"><i class=\"swatch\" style=\"background:{}\"></i>{}</th>", tint(run),
+            put("<th class=\"{}\"><i class=\"swatch\" style=\"border-color:{}\"></i>{}</th>", tint(run),
                 look_of(run).colour, look_of(run).title);
         }
         put("</tr></thead>\n<tbody>\n");
@@ -366,36 +337,17 @@ class Report {
         put("</tbody></table></div>\n</section>\n");
     }
 
-    void put_key() {
-        put("<div class=\"key laws\">");
+    void put_run_key() {
+        std::vector<KeyEntry> entries;
         for (const RunResult& run : runs_) {
-            put("<span><i class=\"swatch\" style=\"background:{}\"></i>{}</span>", look_of(run).colour,
-                look_of(run).title);
+            entries.push_back({look_of(run).colour, look_of(run).title});
         }
-        put("</div>\n");
+        put_key(entries, true);
     }
 
-    /// A plot goes onto the page where this stands; all of them are drawn at the end, by one gnuplot.
-    void put_plot(Plot plot, std::string_view symbol, std::string_view words) {
-        for (Curve& curve : plot.curves) {
-            curve = thinned(curve, plot.x_range, plot_buckets);
-        }
+    void put_history(Plot plot, std::string_view symbol, std::string_view words) {
         plot.x_label = "t [s]";
-        put("<figure>\n<figcaption><b>{}</b><span>{}</span></figcaption>\n", symbol, words);
-        places_.push_back(text_.size());
-        put("</figure>\n");
-        plots_.push_back(std::move(plot));
-    }
-
-    std::string fill_in_plots() {
-        const std::vector<std::string> elements = draw_plots(plots_);
-        std::string whole;
-        std::size_t from = 0;
-        for (std::size_t i = 0; i < elements.size(); ++i) {
-            whole.append(text_, from, places_[i] - from).append(elements[i]);
-            from = places_[i];
-        }
-        return whole.append(text_, from);
+        put_plot(std::move(plot), symbol, words, plot_buckets);
     }
 
     template <typename Value>
@@ -435,18 +387,18 @@ class Report {
 
     void put_motion() {
         put("<section>\n<h2>Motion</h2>\n<p class=\"soft\">Deviations from rest.</p>\n");
-        put_key();
+        put_run_key();
         put("<div class=\"plots\">\n");
         Plot energy =
             overlaid("energy [kJ]", [&](const RunTick& tick) { return 1e-3 * energy_.energy_J(tick.truth.state); });
         energy.x_range.low = 0.0;
         energy.logarithmic = true;
-        put_plot(std::move(energy), "Residual energy", "kinetic and elastic, of the whole crane; logarithmic");
-        put_plot(overlaid("R1 [mm]", deviation(plant::R1_m)), "R1", "vertical motion of the tracks on the soil");
-        put_plot(overlaid("φ2 [mrad]", deviation(plant::phi2_rad)), "φ2", "rocking of tracks and car body");
-        put_plot(overlaid("φ6 [mrad]", deviation(plant::phi6_rad)), "φ6", "boom angle");
-        put_plot(overlaid("q1 [mm]", deviation(plant::q1_m)), "q1", "bending of the boom at its lower joint");
-        put_plot(overlaid("φ9 [mrad]", deviation(plant::phi9_rad)), "φ9", "swing of the load");
+        put_history(std::move(energy), "Residual energy", "kinetic and elastic, of the whole crane; logarithmic");
+        put_history(overlaid("R1 [mm]", deviation(plant::R1_m)), "R1", "vertical motion of the tracks on the soil");
+        put_history(overlaid("φ2 [mrad]", deviation(plant::phi2_rad)), "φ2", "rocking of tracks and car body");
+        put_history(overlaid("φ6 [mrad]", deviation(plant::phi6_rad)), "φ6", "boom angle");
+        put_history(overlaid("q1 [mm]", deviation(plant::q1_m)), "q1", "bending of the boom at its lower joint");
+        put_history(overlaid("φ9 [mrad]", deviation(plant::phi9_rad)), "φ9", "swing of the load");
         put("</div>\n</section>\n");
     }
 
@@ -454,29 +406,21 @@ class Report {
         put("<section>\n<h2>Ropes, ground and power</h2>\n<p class=\"soft\">Ropes only pull: a tension of zero is a "
             "slack "
             "rope. Dotted lines are the tensions at rest.</p>\n");
-        put_key();
+        put_run_key();
         put("<div class=\"plots\">\n");
         Plot pendent =
             overlaid("tension [kN]", [](const RunTick& tick) { return 1e-3 * tick.truth.pendent_tension_N; });
         pendent.marks = {1e-3 * rest_.pendent_tension_N};
-        put_plot(std::move(pendent), "Pendent", "tension of the rope that holds the boom");
+        put_history(std::move(pendent), "Pendent", "tension of the rope that holds the boom");
         Plot load = overlaid("tension [kN]", [](const RunTick& tick) { return 1e-3 * tick.truth.load_line_tension_N; });
         load.marks = {1e-3 * rest_.load_line_tension_N};
-        put_plot(std::move(load), "Load line", "tension of the rope that holds the load");
+        put_history(std::move(load), "Load line", "tension of the rope that holds the load");
         Plot contact = overlaid("contact [%]", [](const RunTick& tick) { return 100.0 * tick.truth.contact_fraction; });
         contact.y_range = PlotRange{0.0, 105.0};
-        put_plot(std::move(contact), "Ground contact", "share of the tracks' length that bears");
-        put_plot(overlaid("power [kW]", [](const RunTick& tick) { return 1e-3 * tick.truth.hydraulic_power_W; }),
-                 "Hydraulic power", "that the valve lets through to the piston");
+        put_history(std::move(contact), "Ground contact", "share of the tracks' length that bears");
+        put_history(overlaid("power [kW]", [](const RunTick& tick) { return 1e-3 * tick.truth.hydraulic_power_W; }),
+                    "Hydraulic power", "that the valve lets through to the piston");
         put("</div>\n</section>\n");
-    }
-
-    void put_swatches(std::span<const std::pair<std::string_view, std::string_view>> colours) {
-        put("<div class=\"laws\">");
-        for (const auto& [colour, words] : colours) {
-            put("<span><i class=\"swatch\" style=\"background:{}\"></i>{}</span>", colour, words);
-        }
-        put("</div>\n");
     }
 
     void put_valve() {
@@ -488,10 +432,9 @@ class Report {
             "the "
             "ends of the spool's travel, ±{:.3g} mm.</p>\n",
             travel_mm);
-        put_swatches(
-            std::array<std::pair<std::string_view, std::string_view>, 3>{{{wanted_colour, "wanted by the law"},
-                                                                          {applied_colour, "sent to the valve"},
-                                                                          {spool_colour, "true spool"}}});
+        put_key(std::array{KeyEntry{wanted_colour, "wanted by the law"}, KeyEntry{applied_colour, "sent to the valve"},
+                           KeyEntry{spool_colour, "true spool"}},
+                false);
         put("<div class=\"plots\">\n");
         for (const RunResult& run : runs_) {
             if (run.options.law == LawKind::none) {
@@ -523,7 +466,7 @@ class Report {
                 most_mm *= 1.08;
             }
             plot.y_range = PlotRange{-most_mm, most_mm};
-            put_plot(std::move(plot), look_of(run).title, "valve opening");
+            put_history(std::move(plot), look_of(run).title, "valve opening");
         }
         put("</div>\n</section>\n");
     }
@@ -533,8 +476,7 @@ class Report {
             "be, "
             "over the truth; run <b>{}</b>, close up.</p>\n",
             look_of(best_).title);
-        put_swatches(std::array<std::pair<std::string_view, std::string_view>, 2>{
-            {{truth_colour, "true"}, {estimate_colour, "estimated"}}});
+        put_key(std::array{KeyEntry{truth_colour, "true"}, KeyEntry{estimate_colour, "estimated"}}, false);
         put("<div class=\"plots\">\n");
         struct Shown {
             plant::Coordinate coordinate;
@@ -559,9 +501,9 @@ class Report {
                 const double error = 1e3 * (estimated(tick) - tick.truth.state[shown.coordinate]);
                 squares += error * error;
             }
-            put_plot(std::move(plot), shown.symbol,
-                     fmt::format("{}; RMS error of the run {:.2g} {}", shown.words,
-                                 std::sqrt(squares / static_cast<double>(best_.ticks.size())), shown.unit));
+            put_history(std::move(plot), shown.symbol,
+                        fmt::format("{}; RMS error of the run {:.2g} {}", shown.words,
+                                    std::sqrt(squares / static_cast<double>(best_.ticks.size())), shown.unit));
         }
         put("</div>\n</section>\n");
     }
@@ -612,9 +554,6 @@ class Report {
     plant::ResidualEnergy energy_;
     const RunResult* uncontrolled_;
     const RunResult& best_;
-    std::string text_;
-    std::vector<Plot> plots_;
-    std::vector<std::size_t> places_;  ///< in text_, of each plot
 };
 
 }  // namespace

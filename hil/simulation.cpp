@@ -14,9 +14,8 @@ using namespace plant;
 
 namespace {
 
-/// Accuracy of the adaptive integrator: 1e-9 relative, and these below, in each entry's unit.
-AdaptiveRungeKutta<CraneState>::Tolerances adaptive_tolerances() {
-    return {.relative = 1e-9, .absolute = CraneState::Constant(1e-10), .max_step_s = 0.01};
+AdaptiveRungeKutta<CraneState>::Tolerances tolerances(double relative) {
+    return {.relative = relative, .absolute = CraneState::Constant(0.1 * relative), .max_step_s = 0.01};
 }
 
 void check(const SimulationOptions& options) {
@@ -30,6 +29,7 @@ void check(const SimulationOptions& options) {
             "the output period must be positive, in s");
     require(!options.step_s || (*options.step_s > 0.0 && *options.step_s <= options.duration_s),
             "the step must be positive and no longer than the duration, in s");
+    require(options.tolerance >= 1e-13 && options.tolerance <= 1e-2, "the tolerance must be within 1e-13 and 1e-2");
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ RunFigures simulate(const SimulationOptions& options, const std::function<void(c
             figures.add(sample(state, t0_s + h));
         }
     } else {
-        AdaptiveRungeKutta<CraneState> integrator(0.0, state, adaptive_tolerances());
+        AdaptiveRungeKutta<CraneState> integrator(0.0, state, tolerances(options.tolerance));
         while (integrator.time_s() < options.duration_s) {
             integrator.advance(rate);
             finite(integrator.state(), integrator.time_s());

@@ -19,6 +19,7 @@ struct SimulateOptions {
     std::string law = "none";
     std::optional<double> duration_s;
     std::optional<double> step_s;
+    double tolerance = SimulationOptions{}.tolerance;
     double output_period_s = 0.005;
     std::string csv;
 };
@@ -44,6 +45,7 @@ int simulate_case(const SimulateOptions& options) {
     SimulationOptions simulation{.crane_case = load_case(options.crane_case),
                                  .law = *controllers::law_named(options.law),
                                  .step_s = options.step_s,
+                                 .tolerance = options.tolerance,
                                  .output_period_s = options.output_period_s};
     simulation.duration_s = options.duration_s.value_or(simulation.crane_case.manoeuvre.duration_s);
     std::string csv = csv_header();
@@ -71,10 +73,18 @@ void add_simulate_command(CLI::App& app, Action& selected) {
     command->add_option("--law", options->law, law_names())->check(law_name())->capture_default_str();
     command->add_option("--duration-s", options->duration_s, "Simulated time; the case's own if not given")
         ->check(positive_up_to(86'400.0, "s"));
+    CLI::Option* step =
+        command
+            ->add_option("--step-s", options->step_s,
+                         "Runge-Kutta of order 4 with this fixed step, instead of order 5(4) with steps "
+                         "as the error asks")
+            ->check(positive_up_to(0.1, "s"));
     command
-        ->add_option("--step-s", options->step_s,
-                     "Fixed-step Runge-Kutta 4 with this step; without it the adaptive integrator runs")
-        ->check(positive_up_to(0.1, "s"));
+        ->add_option("--tolerance", options->tolerance,
+                     "Error allowed in a step of order 5(4), as a share of each entry of the state")
+        ->check(between(1e-13, 1e-2, "of the entry"))
+        ->capture_default_str()
+        ->excludes(step);
     command->add_option("--output-period-s", options->output_period_s, "Time between two lines of the file")
         ->check(between(1e-6, 3600.0, "s"))
         ->capture_default_str();

@@ -1,5 +1,10 @@
 #include "hil/reproduction/claim.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
 namespace steadyboom::hil::reproduction {
 
 namespace {
@@ -19,15 +24,6 @@ double percent(double ratio) {
 /// RMS from `from_s` on, with a law over without.
 double rest_ratio(const ThesisRun& with, const ThesisRun& without, Signal signal, double from_s = 5.0) {
     return fluctuation(with, signal, from_s) / fluctuation(without, signal, from_s);
-}
-
-/// How much of a motion's first two seconds is left in its last three.
-double left_over(const ThesisRun& run, Signal signal) {
-    return fluctuation(run, signal, run.duration_s() - 3.0) / fluctuation(run, signal, 0.0, 2.0);
-}
-
-double residual_share(const ThesisRun& with, const ThesisRun& without) {
-    return with.figures().residual_energy_J / without.figures().residual_energy_J;
 }
 
 double peak_power_kW(const ThesisRun& run) {
@@ -59,13 +55,28 @@ double coinciding(const ThesisRun& run, Signal signal, Signal other) {
     return found;
 }
 
-double visible_count(const ThesisRun& run, Signal signal) {
-    return static_cast<double>(visible_peaks(run, signal).size());
-}
-
 /// Energy that the piston gave the crane, in per cent of what the crane had at the start.
 double piston_share_percent(const ThesisRun& run) {
     return 100.0 * run.piston_work_J() / run.signal(crane_energy_J).front();
+}
+
+/// Energy left with the printed gain over the least of half and twice that gain.
+Measure best_gain(const ThesisRun& run, const ThesisRun& halved, const ThesisRun& doubled) {
+    return at_most("energy left over the least with half and twice the gain", "",
+                   run.figures().residual_energy_J /
+                       std::min(halved.figures().residual_energy_J, doubled.figures().residual_energy_J),
+                   1.0, 1.1);
+}
+
+Condition gain_would_have_to_be(ThesisRun ThesisRuns::*run, ThesisRun ThesisRuns::*halved,
+                                ThesisRun ThesisRuns::*doubled) {
+    return [=](const ThesisRuns& r) {
+        const auto energy_J = [&](ThesisRun ThesisRuns::*which) { return (r.*which).figures().residual_energy_J; };
+        return fmt::format(
+            "The printed gain would have to lie near the best. Half of it leaves {:.3g} J, the gain as "
+            "printed {:.3g} J, twice that {:.3g} J",
+            energy_J(halved), energy_J(run), energy_J(doubled));
+    };
 }
 
 const std::string power_if =
@@ -111,7 +122,7 @@ std::vector<Claim> case_a_law_1() {
                               fluctuation(r.a1, phi6_rad, 8.0) / fluctuation(r.a1, phi6_rad, 2.0, 4.0), 0.8, 0.5)};
          }},
         {"7-A1-07", "7, case A, law 1", "67", "9.0 Hz dominate the boom chord's rotation", "9.0 Hz",
-         "Holding the chord would have to leave a mode there; see the uncontrolled frequencies",
+         [](const ThesisRuns& r) { return mode_would_have_to_be(r.a1, 9.0); },
          [](const ThesisRuns& r) -> Measures {
              return {frequency("phi6, dominant", 9.0, dominant_Hz(r.a1, phi6_rad))};
          }},
@@ -155,6 +166,19 @@ std::vector<Claim> case_a_law_1() {
          [](const ThesisRuns& r) -> Measures {
              return {at_most("piston's work on the crane, of the energy at the start", "%", piston_share_percent(r.a1),
                              -50.0, 0.0)};
+         }},
+        {"7-A1-15", "7, case A, law 1", "-", "Its gains are those that leave the least motion", "the best",
+         gain_would_have_to_be(&ThesisRuns::a1, &ThesisRuns::a1_halved, &ThesisRuns::a1_doubled),
+         [](const ThesisRuns& r) -> Measures { return {best_gain(r.a1, r.a1_halved, r.a1_doubled)}; }},
+        {"7-A1-16", "7, case A, law 1", "63-66", "The law improves the crane's response", "improved", "",
+         [](const ThesisRuns& r) -> Measures {
+             return {smaller("energy left, with over without", residual_share(r.a1, r.a))};
+         }},
+        {"7-A1-17", "7, case A, law 1", "-", "Without control too the soil takes energy out of the crane",
+         "qualitative", "",
+         [](const ThesisRuns& r) -> Measures {
+             return {at_least("taken by the soil within 10 s, of the energy at the start", "%",
+                              -100.0 * r.a.soil_work_J() / r.a.signal(crane_energy_J).front(), 1.0, 0.0)};
          }},
     };
 }
@@ -284,6 +308,30 @@ std::vector<Claim> case_a_law_2() {
              return {at_least("share of q1's visible peaks that R1 has", "",
                               coinciding(r.a2, q1_m, R1_m) / visible_count(r.a2, q1_m), 1.0, 0.5)};
          }},
+        {"7-A2-25", "7, case A, law 2", "-", "Its gain is that which leaves the least motion", "the best",
+         gain_would_have_to_be(&ThesisRuns::a2, &ThesisRuns::a2_halved, &ThesisRuns::a2_doubled),
+         [](const ThesisRuns& r) -> Measures { return {best_gain(r.a2, r.a2_halved, r.a2_doubled)}; }},
+        {"7-A2-26", "7, case A, law 2", "-", "The two boom joints are strongly coupled", "strongly", "",
+         [](const ThesisRuns& r) -> Measures {
+             return {at_least("|correlation| of q1 and q2 without control", "",
+                              std::abs(correlation(r.a, q1_m, r.a, q2_m)), 0.8, 0.5)};
+         }},
+        {"7-A2-27", "7, case A, law 2", "78", "Less bending means that the boom's chord fluctuates less", "less", "",
+         [](const ThesisRuns& r) -> Measures {
+             return {smaller("fluctuation of the chord, with over without",
+                             fluctuation(r.a2, chord_m) / fluctuation(r.a, chord_m))};
+         }},
+        {"7-A2-28", "7, case A, law 2", "76", "Feeding back the lower joint alone calms the upper one too",
+         "the whole boom", "",
+         [](const ThesisRuns& r) -> Measures {
+             return {attenuated("RMS of q2 from 5 s", rest_ratio(r.a2, r.a, q2_m))};
+         }},
+        {"7-A2-29", "7, case A, law 2", "68, 79, 85", "Of the three laws it needs the least power",
+         "13.0, 96, over 200 kW", "",
+         [](const ThesisRuns& r) -> Measures {
+             return {smaller("power, law 2 over law 1", peak_power_kW(r.a2) / peak_power_kW(r.a1)),
+                     smaller("law 2 over law 3", peak_power_kW(r.a2) / peak_power_kW(r.a3))};
+         }},
     };
 }
 
@@ -368,7 +416,7 @@ std::vector<Claim> case_a_law_3() {
                  at_most("likeness to that without", "", spectral_likeness(r.a3, phi2_rad, r.a, phi2_rad), 0.5, 0.8)};
          }},
         {"7-A3-16", "7, case A, law 3", "86, 87", "10.5 Hz dominate the ground's motion", "10.5 Hz",
-         "The mode near 10 Hz would have to be the least damped with law 3",
+         [](const ThesisRuns& r) { return mode_would_have_to_be(r.a3, 10.5); },
          [](const ThesisRuns& r) -> Measures {
              return {frequency("R1, dominant", 10.5, dominant_Hz(r.a3, R1_m)),
                      frequency("phi2, dominant", 10.5, dominant_Hz(r.a3, phi2_rad))};
@@ -378,6 +426,14 @@ std::vector<Claim> case_a_law_3() {
              return {
                  larger("R1, dominant with over without", dominant_Hz(r.a3, R1_m) / dominant_Hz(r.a, R1_m)),
                  larger("phi2, dominant with over without", dominant_Hz(r.a3, phi2_rad) / dominant_Hz(r.a, phi2_rad))};
+         }},
+        {"7-A3-18", "7, case A, law 3", "-", "Its gain is that which leaves the least motion", "the best",
+         gain_would_have_to_be(&ThesisRuns::a3, &ThesisRuns::a3_halved, &ThesisRuns::a3_doubled),
+         [](const ThesisRuns& r) -> Measures { return {best_gain(r.a3, r.a3_halved, r.a3_doubled)}; }},
+        {"7-A3-19", "7, case A, law 3", "85-87", "It too passes no energy on to the soil", "qualitative",
+         "The soil would have to take no more of the energy than it does without control",
+         [](const ThesisRuns& r) -> Measures {
+             return {at_most("soil's take, with over without", "", r.a3.soil_work_J() / r.a.soil_work_J(), 1.0, 1.1)};
          }},
     };
 }
@@ -484,6 +540,34 @@ std::vector<Claim> case_b_law_2() {
          [](const ThesisRuns& r) -> Measures {
              return {same("q1 over R1, dominant", dominant_Hz(r.b2, q1_m) / dominant_Hz(r.b2, R1_m))};
          }},
+        {"7-B2-21", "7, case B, law 2", "-", "Its gain is that which leaves the least motion", "the best",
+         gain_would_have_to_be(&ThesisRuns::b2, &ThesisRuns::b2_halved, &ThesisRuns::b2_doubled),
+         [](const ThesisRuns& r) -> Measures { return {best_gain(r.b2, r.b2_halved, r.b2_doubled)}; }},
+        {"7-B2-22", "7, case B, law 2", "38, 89", "phi2 looks as without control", "similar",
+         "The law would have to leave the ground's frequencies as they are; damping the load's bounce alters which of "
+         "them dominates",
+         [](const ThesisRuns& r) -> Measures {
+             return {
+                 at_least("likeness of the spectra", "", spectral_likeness(r.b2, phi2_rad, r.b, phi2_rad), 0.8, 0.5)};
+         }},
+        {"7-B2-23", "7, case B, law 2", "88-92", "The crane is calmed only modestly", "modestly",
+         "The law would have to do less: it leaves less of the energy than a modest help would",
+         [](const ThesisRuns& r) -> Measures {
+             return {
+                 {"energy left, with over without", "", residual_share(r.b2, r.b), Range{0.5, 1.0}, Range{0.25, 1.0}}};
+         }},
+        {"7-B2-24", "7, case B, law 2", "92-94", "The energy goes into the soil, with whose motion the law works",
+         "qualitative",
+         "The soil's share of the crane's energy would have to be the larger: here the piston takes it out",
+         [](const ThesisRuns& r) -> Measures {
+             return {at_most("piston's take over the soil's", "", r.b2.piston_work_J() / r.b2.soil_work_J(), 0.5, 1.0)};
+         }},
+        {"7-B2-25", "7, case B, law 2", "77, 80, 93, 94",
+         "Fewer of the law's frequencies meet one of the ground than in case A", "fewer", "",
+         [](const ThesisRuns& r) -> Measures {
+             return {at_least("visible peaks of q1 that R1 has, A less B", "",
+                              coinciding(r.a2, q1_m, R1_m) - coinciding(r.b2, q1_m, R1_m), 1.0, 1.0)};
+         }},
     };
 }
 
@@ -564,6 +648,14 @@ std::vector<Claim> case_c_law_2() {
          [](const ThesisRuns& r) -> Measures {
              return {{"visible peaks of q1 that R1 has", "", coinciding(r.c2, q1_m, R1_m), Range{1.0, 1.0},
                       Range{0.0, 2.0}}};
+         }},
+        {"7-C2-15", "7, case C, law 2", "-", "Its gain is that which leaves the least motion", "the best",
+         gain_would_have_to_be(&ThesisRuns::c2, &ThesisRuns::c2_halved, &ThesisRuns::c2_doubled),
+         [](const ThesisRuns& r) -> Measures { return {best_gain(r.c2, r.c2_halved, r.c2_doubled)}; }},
+        {"7-C2-16", "7, case C, law 2", "99, 100", "The law passes hardly any more energy on to the soil", "not much",
+         "",
+         [](const ThesisRuns& r) -> Measures {
+             return {at_most("soil's take, with over without", "", r.c2.soil_work_J() / r.c.soil_work_J(), 1.1, 1.25)};
          }},
     };
 }

@@ -1,6 +1,9 @@
 #include "hil/reproduction/claim.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
 
 namespace steadyboom::hil::reproduction {
 
@@ -8,10 +11,6 @@ namespace {
 
 using enum Signal;
 using Measures = std::vector<Measure>;
-
-double residual_share(const ThesisRun& with, const ThesisRun& without) {
-    return with.figures().residual_energy_J / without.figures().residual_energy_J;
-}
 
 /// Share of the time, in per cent, in which part of the tracks is off the soil.
 double lifted_percent(const ThesisRun& run) {
@@ -133,6 +132,25 @@ std::vector<Claim> chapter_8_claims() {
              const double stiff = residual_share(r.a2, r.a);
              return {larger("share of the energy left, B over A", residual_share(r.b2, r.b) / stiff),
                      larger("share of the energy left, C over A", residual_share(r.c2, r.c) / stiff)};
+         }},
+        {"8-18", "8", "32, 45, 56", "The soil's shear modulus changes the rotation of the tracks a good deal",
+         "largely", "The soil would have to be about as soft as ropes and boom are; its modes lie above theirs",
+         [](const ThesisRuns& r) -> Measures {
+             return {at_most("|correlation| of phi2 in case A with half the modulus", "",
+                             std::abs(correlation(r.a_soft, phi2_rad, r.a, phi2_rad)), 0.5, 0.8)};
+         }},
+        {"8-19", "8", "31, 44, 55", "The frequencies that make up the ground's motion change with the shear modulus",
+         "change",
+         [](const ThesisRuns& r) {
+             return fmt::format(
+                 "The soil would have to set the frequency of the ground's motion; with half the modulus "
+                 "{:.2g} Hz dominate R1, with the whole {:.2g} Hz",
+                 dominant_Hz(r.a_soft, R1_m), dominant_Hz(r.a, R1_m));
+         },
+         [](const ThesisRuns& r) -> Measures {
+             const double ratio = dominant_Hz(r.a_soft, R1_m) / dominant_Hz(r.a, R1_m);
+             return {at_least("change of what dominates R1, half the modulus against the whole", "%",
+                              100.0 * std::abs(ratio - 1.0), 10.0, 2.0)};
          }},
     };
 }

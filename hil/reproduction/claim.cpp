@@ -46,7 +46,7 @@ Row answer(const Claim& claim, const ThesisRuns& runs) {
             .verdict = Verdict::not_examined,
             .here = "not examined",
             .reason = "no run of this model can tell",
-            .would_hold_if = claim.would_hold_if};
+            .would_hold_if = claim.would_hold_if.words(runs)};
     if (!claim.measures) {
         return row;
     }
@@ -130,6 +130,28 @@ Measure larger(std::string name, double ratio) {
 
 Measure same(std::string name, double ratio) {
     return {std::move(name), "", ratio, Range{1.0 / 1.1, 1.1}, Range{0.8, 1.25}};
+}
+
+std::string modes_in_words(const ThesisRun& run) {
+    std::string words;
+    for (const plant::LinearMode& mode : run.modes()) {
+        if (mode.frequency_Hz < 30.0) {
+            words += fmt::format("{}{:.2g}", words.empty() ? "" : ", ", mode.frequency_Hz);
+        }
+    }
+    return words + " Hz";
+}
+
+std::string mode_would_have_to_be(const ThesisRun& run, double frequency_Hz) {
+    const plant::LinearMode& nearest = *std::ranges::min_element(run.modes(), {}, [&](const plant::LinearMode& mode) {
+        return std::abs(std::log(mode.frequency_Hz / frequency_Hz));
+    });
+    const double factor = std::pow(frequency_Hz / nearest.frequency_Hz, 2);
+    return fmt::format(
+        "A mode would have to be at {:.3g} Hz, and the catch excite it most. The nearest, in {}, is at {:.3g} Hz and "
+        "would need {:.2g} times its stiffness for its mass; the linear modes of {} are at {}",
+        frequency_Hz, plant::coordinate_name(nearest.dominant), nearest.frequency_Hz, factor, run.name(),
+        modes_in_words(run));
 }
 
 std::vector<Row> judge(const ThesisRuns& runs) {

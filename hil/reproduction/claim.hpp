@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "hil/reproduction/thesis_runs.hpp"
@@ -50,6 +52,27 @@ struct Measure {
 /// Two things said to be the same: holds within 10 %, in kind within 25 %.
 [[nodiscard]] Measure same(std::string name, double ratio);
 
+/// What would have to be true for a claim to hold: words, or words about the runs, whose numbers come from them.
+class Condition {
+  public:
+    Condition(const char* words) : Condition(std::string(words)) {}
+    Condition(std::string words) : words_([words = std::move(words)](const ThesisRuns&) { return words; }) {}
+    template <typename Words>
+    requires std::is_invocable_r_v<std::string, Words, const ThesisRuns&> Condition(Words words)
+        : words_(std::move(words)) {}
+
+    [[nodiscard]] std::string words(const ThesisRuns& runs) const { return words_(runs); }
+
+  private:
+    std::function<std::string(const ThesisRuns&)> words_;
+};
+
+/// The modes of a run's crane that are slower than 30 Hz: "0.14, 1.4, 3.7 Hz".
+[[nodiscard]] std::string modes_in_words(const ThesisRun& run);
+/// What would give a run's crane a mode of that frequency: the nearest one it has and how much stiffer or softer it
+/// would have to be.
+[[nodiscard]] std::string mode_would_have_to_be(const ThesisRun& run, double frequency_Hz);
+
 /// A sentence of the thesis about behaviour, and how the runs are asked about it.
 struct Claim {
     std::string id;
@@ -58,7 +81,7 @@ struct Claim {
     std::string claim;    ///< in this project's words
     std::string thesis;   ///< its value with unit, or its word
     /// What would have to be true for it to hold; shown where it does not hold or holds in kind alone.
-    std::string would_hold_if;
+    Condition would_hold_if;
     /// Empty where no run can tell: the claim is then not examined, and `would_hold_if` says what it needs.
     std::function<std::vector<Measure>(const ThesisRuns&)> measures;
 };

@@ -1,13 +1,12 @@
+#include <algorithm>
 #include <array>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "hil/html_text.hpp"
-#include "hil/plot.hpp"
+#include "hil/html_page.hpp"
 #include "hil/reproduction/reproduction_report.hpp"
 
 namespace steadyboom::hil::reproduction {
@@ -18,39 +17,21 @@ constexpr int plot_buckets = 260;
 constexpr double spectra_up_to_Hz = 25.0;
 
 constexpr std::string_view style = R"(
-:root{--paper:#fcfcfa;--ink:#1d2329;--soft:#5c6670;--line:#d9dcdf}
-*{box-sizing:border-box}
-body{margin:0 auto;padding:2rem 1.1rem 3rem;max-width:76rem;background:var(--paper);color:var(--ink);
-font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif}
-h1{font-size:1.9rem;line-height:1.2;margin:0}
-h2{font-size:1.3rem;margin:2.4rem 0 .3rem}
-h3{font-size:1.05rem;margin:1.6rem 0 .3rem}
-p{margin:.5rem 0;max-width:48rem}
-.soft,figcaption span{color:var(--soft)}
 .counts{display:flex;flex-wrap:wrap;gap:.6rem;margin:1rem 0;padding:0;list-style:none}
-.counts li{border:1px solid var(--line);border-radius:8px;padding:.4rem .8rem;background:#fff}
+.counts li{border:1px solid var(--line);border-radius:8px;padding:.4rem .8rem;background:var(--panel)}
 .counts b{font-size:1.4rem;margin-right:.4rem}
-table{border-collapse:collapse;width:100%;font-size:.9rem;table-layout:fixed}
-th,td{padding:.35rem .5rem;text-align:left;vertical-align:top;border-bottom:1px solid var(--line);overflow-wrap:anywhere}
-thead th{border-bottom:2px solid var(--ink)}
-tr{break-inside:avoid}
-td small{display:block;color:var(--soft);margin-top:.15rem}
+table{width:100%;font-size:.9rem;table-layout:fixed}
+th,td{padding:.35rem .5rem;text-align:left;vertical-align:top;overflow-wrap:anywhere}
+td small{display:block;margin-top:.15rem}
 .v{font-weight:650;padding-left:.6rem}
-.v0{border-left:6px solid #00966e;color:#006b4f}
-.v1{border-left:6px double #b77400;color:#8a5800}
-.v2{border-left:6px dashed #c0392b;color:#a32a1e}
-.v3{border-left:6px dotted #8c8c8c;color:#5c6670;font-weight:400}
-.key{display:flex;flex-wrap:wrap;gap:.2rem 1.3rem;margin:.4rem 0}
-.swatch{display:inline-block;width:1.6em;height:0;border-top:3px solid;vertical-align:.25em;margin-right:.4em}
-.plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,29rem),1fr));gap:1.2rem 1.5rem}
-figure{margin:0;break-inside:avoid}
-figcaption{font-size:.93rem}
-figcaption span{margin-left:.4em}
-svg{display:block;width:100%;height:auto}
+.v0{border-left:6px solid var(--good);color:var(--good)}
+.v1{border-left:6px double var(--fair);color:var(--fair)}
+.v2{border-left:6px dashed var(--bad);color:var(--bad)}
 @media (max-width:46rem){table,tbody,tr,td{display:block;width:auto!important}thead{display:none}
-tr{border-bottom:2px solid var(--line);padding:.4rem 0}td{border:0;padding:.12rem .5rem}
+tr{border-bottom:2px solid var(--line);padding:.5rem 0}td{border-bottom:0;padding:.12rem .2rem}
+.v{border-left-width:6px;padding-left:.6rem;margin-top:.3rem}
 td[data-k]::before{content:attr(data-k) ": ";color:var(--soft)}}
-@media print{body{font-size:9.5pt;padding:0;max-width:none}.plots{grid-template-columns:1fr 1fr}}
+@media print{table{font-size:8.5pt}th,td{padding:.2rem .35rem}}
 )";
 
 constexpr std::array<std::string_view, 4> marks{"●", "◐", "○", "–"};
@@ -71,31 +52,27 @@ struct Look {
     bool dashed;
 };
 
-class Page {
+class Page : HtmlPage {
   public:
     Page(const std::vector<Row>& rows, const Appendix& appendix, const ThesisRuns& runs)
-        : rows_(rows), appendix_(appendix), runs_(runs) {}
+        : HtmlPage("the thesis, claim by claim", style),
+          rows_(rows),
+          appendix_(appendix),
+          runs_(runs),
+          turned_(turned_rows(rows, appendix.sensitivity)) {}
 
     std::string text() {
-        put("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-            "<title>Steadyboom: the thesis, claim by claim</title>\n<style>{}</style>\n</head>\n<body>\n",
-            style);
         put_head();
         put_claims();
-        put_misprints();
-        put_sensitivity();
         put_figures();
-        put("<p class=\"soft\">Steadyboom {}</p>\n</body>\n</html>\n", STEADYBOOM_VERSION);
-        return with_plots();
+        put_sensitivity();
+        put_misprints();
+        put_numerics();
+        put("<p class=\"soft\">Steadyboom {}</p>\n", STEADYBOOM_VERSION);
+        return std::move(*this).finished();
     }
 
   private:
-    template <typename... Values>
-    void put(fmt::format_string<Values...> format, Values&&... values) {
-        fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
-    }
-
     void put_head() {
         put("<h1>The thesis, claim by claim</h1>\n"
             "<p>What K. M. Finn's <i>A Reduced-Order Crawler Crane Model with Active Control to Attenuate the "
@@ -116,10 +93,10 @@ class Page {
             "right sign; a comparison in words by the limit that its row states. A row is as good as its worst "
             "measure. "
             "Spectra: Hann window, amplitude-correct, {:.1g} Hz from bin to bin; the dominant frequency is the largest "
-            "peak "
-            "above 0.3 Hz; a peak is visible from a fifth of the largest. Likeness is the cosine between two amplitude "
+            "peak from {:g} Hz on, which is what 10 s resolve: slower swings, as of the load on its line, are not "
+            "counted; a peak is visible from a fifth of the largest. Likeness is the cosine between two amplitude "
             "spectra up to 30 Hz. Not examined are claims about Patten's higher-order boom.</p>\n",
-            runs_.a.duration_s(), 1e3 * runs_.a.period_s(), runs_.a.spectrum(Signal::R1_m).spacing_Hz);
+            runs_.a.duration_s(), 1e3 * runs_.a.period_s(), runs_.a.spectrum(Signal::R1_m).spacing_Hz, slowest_Hz);
     }
 
     void put_claims() {
@@ -140,44 +117,109 @@ class Page {
                 put("<small>{}</small>", html_text(row.reason));
             }
             if (!row.would_hold_if.empty()) {
-                put("<small>{}: {}</small>", row.verdict == Verdict::not_examined ? "Needs" : "Would have to be true",
+                put("<small>{}: {}</small>", row.verdict == Verdict::not_examined ? "Needs" : "For it to hold",
                     html_text(row.would_hold_if));
+            }
+            if (const auto turned = std::ranges::find(turned_, &row, &TurnedRow::row); turned != turned_.end()) {
+                put("<small>Hangs on: {}</small>", html_text(turns_in_words(*turned)));
             }
             put("</td><td class=\"v v{}\">{} {}</td></tr>\n", verdict, marks[verdict], name_of(row.verdict));
         }
         put("</tbody>\n</table>\n");
     }
 
+    /// "soil.poisson_ratio = 0.2 (holds), ..."
+    static std::string turns_in_words(const TurnedRow& row) {
+        std::string words;
+        for (const TurnedRow::Turn& turn : row.turns) {
+            words += fmt::format("{}{} ({})", words.empty() ? "" : ", ", name_of(*turn.variation), name_of(turn.to));
+        }
+        return words;
+    }
+
+    void put_sensitivity() {
+        const std::vector<Variation>& variations = appendix_.sensitivity.variations;
+        if (variations.empty()) {
+            return;
+        }
+        put("<h2>Sensitivity</h2>\n<p>What the thesis leaves open, varied one by one. Each variation runs the cases "
+            "anew "
+            "and all {} claims are judged again: {} keep their verdict in every one of the {} variations.</p>\n<ul>\n",
+            rows_.size(), rows_.size() - turned_.size(), variations.size());
+        for (const SensitivityRange& range : appendix_.sensitivity.ranges) {
+            put("<li>{}: {} <span class=\"soft\">({})</span></li>\n", html_text(range.parameter),
+                html_text(range.range), html_text(range.reason));
+        }
+        put("</ul>\n<table>\n<thead><tr><th style=\"width:45%\">variation</th><th style=\"width:15%\">of the shipped "
+            "value</th><th>rows that change their verdict</th></tr></thead>\n<tbody>\n");
+        for (const Variation& variation : variations) {
+            put("<tr><td>{}</td><td data-k=\"of the shipped value\">{}</td><td data-k=\"rows that change\">",
+                html_text(name_of(variation)),
+                variation.parameter == "actuator.valve_model" ? "" : fmt::format("× {:.3g}", variation.factor));
+            if (!variation.failure.empty()) {
+                put("no run: {}", html_text(variation.failure));
+            } else {
+                put("{}", std::ranges::count_if(turned_, [&](const TurnedRow& row) {
+                        return std::ranges::find(row.turns, &variation, &TurnedRow::Turn::variation) != row.turns.end();
+                    }));
+            }
+            put("</td></tr>\n");
+        }
+        put("</tbody>\n</table>\n<h3>Rows that change their verdict</h3>\n<table>\n<thead><tr><th "
+            "style=\"width:6rem\">row</th><th style=\"width:30%\">claim</th><th style=\"width:10rem\">as "
+            "shipped</th><th>turned by</th></tr></thead>\n<tbody>\n");
+        for (const TurnedRow& turned : turned_) {
+            const auto verdict = static_cast<std::size_t>(turned.row->verdict);
+            put("<tr><td>{}</td><td>{}</td><td class=\"v v{}\">{} {}</td><td data-k=\"turned by\">{}</td></tr>\n",
+                turned.row->id, html_text(turned.row->claim), verdict, marks[verdict], name_of(turned.row->verdict),
+                html_text(turns_in_words(turned)));
+        }
+        put("</tbody>\n</table>\n");
+    }
+
     void put_misprints() {
+        if (appendix_.misprints.empty()) {
+            return;
+        }
         put("<h2>Misprints</h2>\n<p class=\"soft\">Where the thesis contradicts itself, what is used instead and the "
             "calculation that decides.</p>\n<table>\n<thead><tr><th style=\"width:12%\">where</th><th "
             "style=\"width:17%\">printed</th><th style=\"width:17%\">used</th><th>what decides</th><th>with the "
-            "printed "
-            "one</th></tr></thead>\n<tbody>\n");
+            "printed one</th></tr></thead>\n<tbody>\n");
         for (const MisprintRow& row : appendix_.misprints) {
-            put("<tr><td>{}</td><td data-k=\"printed\">{}</td><td data-k=\"used\">{}</td><td>{}</td><td>{}</td></tr>\n",
+            put("<tr><td>{}</td><td data-k=\"printed\">{}</td><td data-k=\"used\">{}</td><td data-k=\"what "
+                "decides\">{}</td><td data-k=\"with the printed one\">{}</td></tr>\n",
                 html_text(row.where), html_text(row.printed), html_text(row.used), html_text(row.calculation),
                 html_text(row.consequence));
         }
         put("</tbody>\n</table>\n");
     }
 
-    void put_sensitivity() {
-        put("<h2>Sensitivity</h2>\n<p class=\"soft\">What the thesis leaves open, varied over a range; claims in "
-            "words, "
-            "without a law and with law 2, and which variations turn the answer.</p>\n<ul>\n");
-        for (const SensitivityRange& range : appendix_.sensitivity.ranges) {
-            put("<li>{}: {} <span class=\"soft\">({})</span></li>\n", html_text(range.parameter),
-                html_text(range.range), html_text(range.reason));
+    void put_numerics() {
+        put("<h2>Numerical methods</h2>\n<p>The thesis (chapter 4) integrates with a Runge-Kutta method of variable "
+            "step "
+            "and solves for the accelerations by Gauss elimination with full pivoting, because it finds the mass "
+            "matrix "
+            "M ill-conditioned. Here a Runge-Kutta method of order 5(4) keeps the error of each step below {:g} of "
+            "each "
+            "entry, and M is factorised as LDL' without pivoting. How well M can be inverted, and how far the two ways "
+            "of solving are apart, at every sample of the runs without control:</p>\n<table>\n<thead><tr><th "
+            "style=\"width:14%\">run</th><th>condition of M at rest</th><th>worst of the run</th><th>diagonal scaled "
+            "to "
+            "one, at rest</th><th>worst of the run</th><th>rows without a dominant diagonal</th><th>largest difference "
+            "of "
+            "LDL' and full pivoting</th></tr></thead>\n<tbody>\n",
+            runs_.a.options().tolerance);
+        for (const Conditioning& row : appendix_.conditioning) {
+            put("<tr><td>{}</td><td data-k=\"condition of M at rest\">{:.3g}</td><td data-k=\"worst\">{:.3g}</td><td "
+                "data-k=\"scaled, at rest\">{:.3g}</td><td data-k=\"scaled, worst\">{:.3g}</td><td data-k=\"rows "
+                "without a dominant diagonal\">{} of {}</td><td data-k=\"LDL' against full "
+                "pivoting\">{:.1e}</td></tr>\n",
+                html_text(row.run), row.condition_at_rest, row.worst_condition, row.scaled_condition_at_rest,
+                row.worst_scaled_condition, row.rows_without_dominant_diagonal, +plant::coordinate_count,
+                row.solver_difference);
         }
-        put("</ul>\n<table>\n<thead><tr><th style=\"width:38%\">claim</th><th style=\"width:10%\">case</th><th "
-            "style=\"width:14%\">as shipped</th><th>turned by</th></tr></thead>\n<tbody>\n");
-        for (const SensitivityVerdict& verdict : appendix_.sensitivity.verdicts) {
-            put("<tr><td>{}</td><td>{}</td><td data-k=\"as shipped\">{}</td><td data-k=\"turned by\">{}</td></tr>\n",
-                html_text(verdict.claim), html_text(verdict.case_name), verdict.nominal ? "holds" : "does not hold",
-                verdict.changed.empty() ? "nothing" : html_text(fmt::format("{}", fmt::join(verdict.changed, "; "))));
-        }
-        put("</tbody>\n</table>\n");
+        put("</tbody>\n</table>\n<p class=\"soft\">Metres and radians make up most of the unscaled number. A condition "
+            "number of 10<sup>k</sup> costs about k of a double's sixteen digits.</p>\n");
     }
 
     void put_figures() {
@@ -270,12 +312,13 @@ class Page {
     }
 
     void put_case(std::string_view title, std::span<const Look> looks, const std::vector<Shown>& list) {
-        put("<h3>{}</h3>\n<div class=\"key\">", title);
+        put("<h3>{}</h3>\n", title);
+        std::vector<KeyEntry> entries;
         for (const Look& look : looks) {
-            put("<span><i class=\"swatch\" style=\"border-color:{}{}\"></i>{}</span>", look.colour,
-                look.dashed ? ";border-top-style:dashed" : "", look.words);
+            entries.push_back({look.colour, look.words, look.dashed});
         }
-        put("</div>\n<div class=\"plots\">\n");
+        put_key(entries, true);
+        put("<div class=\"plots\">\n");
         for (const Shown& shown : list) {
             Plot plot;
             plot.x_label = shown.spectrum ? "f [Hz]" : "t [s]";
@@ -283,18 +326,15 @@ class Page {
             plot.x_range =
                 shown.spectrum ? PlotRange{0.0, spectra_up_to_Hz} : PlotRange{0.0, looks[0].run->duration_s()};
             for (const Look& look : looks) {
-                plot.curves.push_back(curve_of(look, shown, plot.x_range));
+                plot.curves.push_back(curve_of(look, shown));
             }
-            put("<figure>\n<figcaption><b>Fig. {}</b><span>{}{}</span></figcaption>\n", shown.figures,
-                shown.spectrum ? "amplitude spectrum of " : "", shown.name);
-            places_.push_back(text_.size());
-            plots_.push_back(std::move(plot));
-            put("</figure>\n");
+            put_plot(std::move(plot), fmt::format("Fig. {}", shown.figures),
+                     fmt::format("{}{}", shown.spectrum ? "amplitude spectrum of " : "", shown.name), plot_buckets);
         }
         put("</div>\n");
     }
 
-    static Curve curve_of(const Look& look, const Shown& shown, PlotRange range) {
+    static Curve curve_of(const Look& look, const Shown& shown) {
         Curve curve;
         curve.colour = look.colour;
         curve.dashed = look.dashed;
@@ -306,27 +346,13 @@ class Page {
             curve.x.push_back(static_cast<double>(i) * spacing);
             curve.y.push_back(shown.scale * values[i]);
         }
-        return thinned(curve, range, plot_buckets);
-    }
-
-    std::string with_plots() const {
-        const std::vector<std::string> drawn = draw_plots(plots_);
-        std::string page;
-        std::size_t from = 0;
-        for (std::size_t i = 0; i < drawn.size(); ++i) {
-            page += text_.substr(from, places_[i] - from);
-            page += drawn[i];
-            from = places_[i];
-        }
-        return page + text_.substr(from);
+        return curve;
     }
 
     const std::vector<Row>& rows_;
     const Appendix& appendix_;
     const ThesisRuns& runs_;
-    std::string text_;
-    std::vector<Plot> plots_;
-    std::vector<std::size_t> places_;  ///< in text_, of each plot
+    std::vector<TurnedRow> turned_;
 };
 
 }  // namespace

@@ -31,6 +31,58 @@ nlohmann::ordered_json counts_json(const std::vector<Row>& rows) {
     return counts;
 }
 
+nlohmann::ordered_json run_json(const ThesisRun& run) {
+    nlohmann::ordered_json figures = nlohmann::ordered_json::object();
+    for (const FigureRow& figure : figure_rows) {
+        figures[std::string(figure.key)] = number_or_null(run.figures().*figure.value);
+    }
+    nlohmann::ordered_json modes = nlohmann::ordered_json::array();
+    for (const plant::LinearMode& mode : run.modes()) {
+        modes.push_back({{"frequency_Hz", mode.frequency_Hz},
+                         {"damping_ratio", mode.damping_ratio},
+                         {"dominant_coordinate", plant::coordinate_name(mode.dominant)}});
+    }
+    nlohmann::ordered_json spectra = nlohmann::ordered_json::object();
+    for (int i = 0; i < static_cast<int>(Signal::count); ++i) {
+        nlohmann::ordered_json peaks = nlohmann::ordered_json::array();
+        for (const SpectralPeak& peak : visible_peaks(run, static_cast<Signal>(i))) {
+            peaks.push_back({{"frequency_Hz", peak.frequency_Hz}, {"amplitude", peak.amplitude}});
+        }
+        spectra[std::string(name_of(static_cast<Signal>(i)))] = peaks;
+    }
+    return {{"run", run.name()},
+            {"case", run.options().crane_case.name},
+            {"law", controllers::name_of(run.options().law)},
+            {"figures", figures},
+            {"soil_work_J", run.soil_work_J()},
+            {"piston_work_J", run.piston_work_J()},
+            {"modes", modes},
+            {"spectral_peaks", spectra}};
+}
+
+nlohmann::ordered_json variation_json(const std::vector<Row>& rows, const Variation& variation) {
+    nlohmann::ordered_json changed = nlohmann::ordered_json::array();
+    nlohmann::ordered_json judged = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < variation.rows.size(); ++i) {
+        const Row& row = variation.rows[i];
+        nlohmann::ordered_json values = nlohmann::ordered_json::array();
+        for (const Measure& measure : row.measures) {
+            values.push_back(number_or_null(measure.value));
+        }
+        judged[row.id] = {{"verdict", name_of(row.verdict)}, {"values", values}};
+        if (row.verdict != rows[i].verdict) {
+            changed.push_back({{"row", row.id}, {"from", name_of(rows[i].verdict)}, {"to", name_of(row.verdict)}});
+        }
+    }
+    return {{"parameter", variation.parameter},
+            {"value", variation.value},
+            {"factor", variation.factor},
+            {"case", variation.case_name.empty() ? "all" : variation.case_name},
+            {"failure", variation.failure},
+            {"changed", changed},
+            {"rows", judged}};
+}
+
 /// At most `width` characters of ASCII text.
 std::string shortened(const std::string& text, std::size_t width) {
     return text.size() <= width ? text : text.substr(0, width - 3) + "...";
@@ -56,8 +108,11 @@ std::string table_of(const std::vector<Row>& rows) {
     return text + "\n";
 }
 
-std::string json_of(const std::vector<Row>& rows, const Appendix& appendix) {
-    nlohmann::ordered_json document{{"counts", counts_json(rows)}, {"rows", nlohmann::ordered_json::array()}};
+std::string json_of(const std::vector<Row>& rows, const Appendix& appendix, const ThesisRuns& runs) {
+    nlohmann::ordered_json document{{"version", STEADYBOOM_VERSION},
+                                    {"counts", counts_json(rows)},
+                                    {"rows", nlohmann::ordered_json::array()},
+                                    {"runs", nlohmann::ordered_json::array()}};
     for (const Row& row : rows) {
         nlohmann::ordered_json measures = nlohmann::ordered_json::array();
         for (const Measure& measure : row.measures) {
@@ -79,6 +134,19 @@ std::string json_of(const std::vector<Row>& rows, const Appendix& appendix) {
                                     {"reason", row.reason},
                                     {"would_hold_if", row.would_hold_if}});
     }
+    for (const ThesisRun* run : runs.all()) {
+        document["runs"].push_back(run_json(*run));
+    }
+    document["conditioning"] = nlohmann::ordered_json::array();
+    for (const Conditioning& row : appendix.conditioning) {
+        document["conditioning"].push_back({{"run", row.run},
+                                            {"condition_at_rest", row.condition_at_rest},
+                                            {"worst_condition", row.worst_condition},
+                                            {"scaled_condition_at_rest", row.scaled_condition_at_rest},
+                                            {"worst_scaled_condition", row.worst_scaled_condition},
+                                            {"rows_without_dominant_diagonal", row.rows_without_dominant_diagonal},
+                                            {"solver_difference", row.solver_difference}});
+    }
     document["misprints"] = nlohmann::ordered_json::array();
     for (const MisprintRow& row : appendix.misprints) {
         nlohmann::ordered_json numbers = nlohmann::ordered_json::object();
@@ -93,26 +161,14 @@ std::string json_of(const std::vector<Row>& rows, const Appendix& appendix) {
                                          {"consequence", row.consequence},
                                          {"numbers", numbers}});
     }
-    document["sensitivity"] = {{"runs", nlohmann::ordered_json::array()},
-                               {"verdicts", nlohmann::ordered_json::array()}};
-    for (const SensitivityRow& row : appendix.sensitivity.rows) {
-        nlohmann::ordered_json figures = nlohmann::ordered_json::object();
-        for (const FigureRow& figure : figure_rows) {
-            figures[std::string(figure.key)] = number_or_null(row.figures.*figure.value);
-        }
-        document["sensitivity"]["runs"].push_back({{"parameter", row.parameter},
-                                                   {"value", row.value},
-                                                   {"factor", row.factor},
-                                                   {"case", row.case_name},
-                                                   {"law", controllers::name_of(row.law)},
-                                                   {"failure", row.failure},
-                                                   {"figures", figures}});
+    document["sensitivity"] = {{"ranges", nlohmann::ordered_json::array()},
+                               {"variations", nlohmann::ordered_json::array()}};
+    for (const SensitivityRange& range : appendix.sensitivity.ranges) {
+        document["sensitivity"]["ranges"].push_back(
+            {{"parameter", range.parameter}, {"range", range.range}, {"reason", range.reason}});
     }
-    for (const SensitivityVerdict& verdict : appendix.sensitivity.verdicts) {
-        document["sensitivity"]["verdicts"].push_back({{"claim", verdict.claim},
-                                                       {"case", verdict.case_name},
-                                                       {"nominal", verdict.nominal},
-                                                       {"changed", verdict.changed}});
+    for (const Variation& variation : appendix.sensitivity.variations) {
+        document["sensitivity"]["variations"].push_back(variation_json(rows, variation));
     }
     return document.dump(2) + "\n";
 }

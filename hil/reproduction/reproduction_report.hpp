@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hil/reproduction/claim.hpp"
+#include "hil/reproduction/conditioning.hpp"
 #include "hil/reproduction/misprints.hpp"
 #include "hil/reproduction/sensitivity.hpp"
 
@@ -15,15 +16,17 @@ namespace steadyboom::hil::reproduction {
 
 /// What stands beside the claims.
 struct Appendix {
-    std::vector<MisprintRow> misprints;
-    Sensitivity sensitivity;
+    std::vector<Conditioning> conditioning;
+    std::vector<MisprintRow> misprints;  ///< empty if left out
+    Sensitivity sensitivity;             ///< empty if left out
 };
 
-/// Every number: each row with its measures and the ranges they were judged by (null for no bound), the counts, and the
-/// numbers of the appendix.
-[[nodiscard]] std::string json_of(const std::vector<Row>& rows, const Appendix& appendix);
+/// Every number: the counts, each row with its measures and the ranges they were judged by (null for no bound), each
+/// run with its figures, modes and visible spectral peaks, and the appendix, where every variation has every row's
+/// verdict and values.
+[[nodiscard]] std::string json_of(const std::vector<Row>& rows, const Appendix& appendix, const ThesisRuns& runs);
 
-/// Self-contained HTML page: the claims first, then the appendix, then the thesis's figures. Throws std::runtime_error
+/// Self-contained HTML page: the claims first, then the thesis's figures, then the appendix. Throws std::runtime_error
 /// if gnuplot is missing.
 [[nodiscard]] std::string page_of(const std::vector<Row>& rows, const Appendix& appendix, const ThesisRuns& runs);
 

@@ -1,6 +1,7 @@
 #include "hil/reproduction/thesis_runs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -15,9 +16,31 @@ using controllers::LawKind;
 namespace {
 
 constexpr auto signal_count = static_cast<std::size_t>(Signal::count);
-constexpr double least_Hz = 0.3;
 constexpr double visible_share = 0.2;
 constexpr double compared_up_to_Hz = 30.0;
+
+constexpr std::array members{&ThesisRuns::a,
+                             &ThesisRuns::a1,
+                             &ThesisRuns::a2,
+                             &ThesisRuns::a3,
+                             &ThesisRuns::b,
+                             &ThesisRuns::b2,
+                             &ThesisRuns::c,
+                             &ThesisRuns::c2,
+                             &ThesisRuns::a1_halved,
+                             &ThesisRuns::a1_doubled,
+                             &ThesisRuns::a2_halved,
+                             &ThesisRuns::a2_doubled,
+                             &ThesisRuns::a3_halved,
+                             &ThesisRuns::a3_doubled,
+                             &ThesisRuns::b2_halved,
+                             &ThesisRuns::b2_doubled,
+                             &ThesisRuns::c2_halved,
+                             &ThesisRuns::c2_doubled,
+                             &ThesisRuns::a_soft,
+                             &ThesisRuns::b_on_soil_of_a,
+                             &ThesisRuns::b_at_angle_of_a};
+static_assert(sizeof(ThesisRuns) == members.size() * sizeof(ThesisRun), "every run is in the list");
 
 std::span<const double> part(const ThesisRun& run, Signal signal, double from_s, double to_s) {
     const std::vector<double>& values = run.signal(signal);
@@ -40,10 +63,43 @@ double rms_of(std::span<const double> values) {
 
 }  // namespace
 
-ThesisRun::ThesisRun(std::string name, const SimulationOptions& options)
-    : name_(std::move(name)), options_(options), signals_(signal_count), spectra_(signal_count) {
+std::string_view name_of(Signal signal) noexcept {
+    static constexpr std::array<std::string_view, signal_count> names{"R1_m",
+                                                                      "phi2_rad",
+                                                                      "R9_m",
+                                                                      "q1_m",
+                                                                      "q2_m",
+                                                                      "phi6_rad",
+                                                                      "phi9_rad",
+                                                                      "R1_rate_m_s",
+                                                                      "phi2_rate_rad_s",
+                                                                      "R9_rate_m_s",
+                                                                      "q1_rate_m_s",
+                                                                      "q2_rate_m_s",
+                                                                      "phi6_rate_rad_s",
+                                                                      "phi9_rate_rad_s",
+                                                                      "piston_m",
+                                                                      "pendent_tension_N",
+                                                                      "load_line_tension_N",
+                                                                      "chord_m",
+                                                                      "spool_m",
+                                                                      "power_W",
+                                                                      "contact_fraction",
+                                                                      "boom_energy_J",
+                                                                      "crane_energy_J"};
+    return names[static_cast<std::size_t>(signal)];
+}
+
+ThesisRun::ThesisRun(std::string name, const SimulationOptions& options) {
     const plant::CraneDynamics crane(options.crane_case.crane);
     const plant::Equilibrium rest = plant::find_equilibrium(crane);
+    const auto record = std::make_shared<Record>(Record{.name = std::move(name),
+                                                        .options = options,
+                                                        .rest = rest,
+                                                        .modes = plant::linear_modes(crane, rest.state),
+                                                        .figures = {},
+                                                        .signals = std::vector<std::vector<double>>(signal_count),
+                                                        .spectra = std::vector<Spectrum>(signal_count)});
     const plant::ResidualEnergy energy(crane, rest.state);
     const plant::StructureParameters& structure = options.crane_case.crane.structure;
     const double link_m = structure.link_length_m();
@@ -53,10 +109,10 @@ ThesisRun::ThesisRun(std::string name, const SimulationOptions& options)
 
     double last_t_s = 0.0;
     plant::CraneState last_state = rest.state;
-    figures_ = simulate(options_, [&](const TruthSample& sample) {
+    record->figures = simulate(options, [&](const TruthSample& sample) {
         const plant::CraneState deviation = sample.state - rest.state;
         const auto add = [&](Signal signal, double value) {
-            signals_[static_cast<std::size_t>(signal)].push_back(value);
+            record->signals[static_cast<std::size_t>(signal)].push_back(value);
         };
         for (int i = 0; i < plant::state_count; ++i) {
             add(static_cast<Signal>(i), deviation[i]);
@@ -73,45 +129,109 @@ ThesisRun::ThesisRun(std::string name, const SimulationOptions& options)
             bending_N_m * (q.squaredNorm() - q[0] * q[1]) + 0.5 * q_rate.dot(joint_mass * q_rate));
         add(Signal::crane_energy_J, energy.energy_J(sample.state));
         const plant::NonConservativePower power = plant::non_conservative_power(crane, sample.state, sample.spool_m);
-        soil_work_J_ += power.soil_W * (sample.t_s - last_t_s);
-        piston_work_J_ += power.piston_W * (sample.t_s - last_t_s);
+        record->soil_work_J += power.soil_W * (sample.t_s - last_t_s);
+        record->piston_work_J += power.piston_W * (sample.t_s - last_t_s);
         last_t_s = sample.t_s;
         last_state = sample.state;
     });
-    soil_work_J_ += plant::full_contact_energy_J(crane, last_state) - plant::full_contact_energy_J(crane, rest.state);
-    piston_work_J_ -= rest.pendent_tension_N * last_state[plant::piston_index];
+    record->soil_work_J +=
+        plant::full_contact_energy_J(crane, last_state) - plant::full_contact_energy_J(crane, rest.state);
+    record->piston_work_J -= rest.pendent_tension_N * last_state[plant::piston_index];
     for (std::size_t i = 0; i < signal_count; ++i) {
-        spectra_[i] = amplitude_spectrum(signals_[i], options_.output_period_s);
+        // Without the last sample the record is as long as the run: whole periods of 1/duration stand on a bin.
+        record->spectra[i] = amplitude_spectrum(std::span(record->signals[i]).first(record->signals[i].size() - 1),
+                                                options.output_period_s);
     }
+    record_ = record;
+}
+
+plant::CraneState ThesisRun::state(std::size_t sample) const noexcept {
+    plant::CraneState state = record_->rest.state;
+    for (int i = 0; i < plant::state_count; ++i) {
+        state[i] += record_->signals[static_cast<std::size_t>(i)][sample];
+    }
+    return state;
+}
+
+std::vector<const ThesisRun*> ThesisRuns::all() const {
+    std::vector<const ThesisRun*> runs;
+    for (ThesisRun ThesisRuns::*run : members) {
+        runs.push_back(&(this->*run));
+    }
+    return runs;
 }
 
 ThesisRuns run_thesis(const RunSettings& settings, const std::function<void(std::string_view)>& progress) {
     if (!(settings.duration_s >= 10.0 * settings.period_s)) {
         throw std::invalid_argument("the runs must last at least ten sampling periods");
     }
-    const auto run = [&](std::string name, std::string_view crane_case, LawKind law, auto change) {
+    const Case case_a = load_case("case-a");
+    const Case case_b = load_case("case-b");
+    const Case case_c = load_case("case-c");
+    const auto run = [&](std::string name, const Case& crane_case, LawKind law) {
         progress(name);
-        SimulationOptions options{.crane_case = load_case(crane_case),
-                                  .law = law,
-                                  .duration_s = settings.duration_s,
-                                  .step_s = {},
-                                  .output_period_s = settings.period_s};
-        change(options.crane_case);
-        return ThesisRun(std::move(name), options);
+        return ThesisRun(std::move(name), {.crane_case = crane_case,
+                                           .law = law,
+                                           .duration_s = settings.duration_s,
+                                           .step_s = {},
+                                           .output_period_s = settings.period_s});
     };
-    const auto as_it_is = [](Case&) {};
-    return {.a = run("case A", "case-a", LawKind::none, as_it_is),
-            .b = run("case B", "case-b", LawKind::none, as_it_is),
-            .c = run("case C", "case-c", LawKind::none, as_it_is),
-            .a1 = run("case A, law 1", "case-a", LawKind::boom_angle, as_it_is),
-            .a2 = run("case A, law 2", "case-a", LawKind::joint_deflection, as_it_is),
-            .a3 = run("case A, law 3", "case-a", LawKind::swing_rate, as_it_is),
-            .b2 = run("case B, law 2", "case-b", LawKind::joint_deflection, as_it_is),
-            .c2 = run("case C, law 2", "case-c", LawKind::joint_deflection, as_it_is),
-            .c2_doubled = run("case C, law 2 with twice its gain", "case-c", LawKind::joint_deflection,
-                              [](Case& c) { c.gains.joint_gain_m_m *= 2.0; }),
-            .a_soft = run("case A on soil half as stiff", "case-a", LawKind::none,
-                          [](Case& c) { c.crane.soil.shear_modulus_Pa *= 0.5; })};
+    const auto with_gains = [](Case crane_case, double factor) {
+        controllers::ThesisGains& gains = crane_case.gains;
+        for (double* gain : {&gains.boom_angle_gain_m_rad, &gains.boom_rate_gain_m_s_rad, &gains.joint_gain_m_m,
+                             &gains.swing_rate_gain_m_s_rad}) {
+            *gain *= factor;
+        }
+        return crane_case;
+    };
+    const auto halved = [&](const std::string& name, const Case& crane_case, LawKind law) {
+        return run(name + ", gains halved", with_gains(crane_case, 0.5), law);
+    };
+    const auto doubled = [&](const std::string& name, const Case& crane_case, LawKind law) {
+        return run(name + ", gains doubled", with_gains(crane_case, 2.0), law);
+    };
+    Case a_soft = case_a;
+    a_soft.crane.soil.shear_modulus_Pa *= 0.5;
+    Case b_on_soil_of_a = case_b;
+    b_on_soil_of_a.crane.soil.shear_modulus_Pa = case_a.crane.soil.shear_modulus_Pa;
+    Case b_at_angle_of_a = case_b;
+    b_at_angle_of_a.crane.structure.boom_angle_rad = case_a.crane.structure.boom_angle_rad;
+    using enum LawKind;
+    return {.a = run("case A", case_a, none),
+            .b = run("case B", case_b, none),
+            .c = run("case C", case_c, none),
+            .a1 = run("case A, law 1", case_a, boom_angle),
+            .a2 = run("case A, law 2", case_a, joint_deflection),
+            .a3 = run("case A, law 3", case_a, swing_rate),
+            .b2 = run("case B, law 2", case_b, joint_deflection),
+            .c2 = run("case C, law 2", case_c, joint_deflection),
+            .a1_halved = halved("case A, law 1", case_a, boom_angle),
+            .a1_doubled = doubled("case A, law 1", case_a, boom_angle),
+            .a2_halved = halved("case A, law 2", case_a, joint_deflection),
+            .a2_doubled = doubled("case A, law 2", case_a, joint_deflection),
+            .a3_halved = halved("case A, law 3", case_a, swing_rate),
+            .a3_doubled = doubled("case A, law 3", case_a, swing_rate),
+            .b2_halved = halved("case B, law 2", case_b, joint_deflection),
+            .b2_doubled = doubled("case B, law 2", case_b, joint_deflection),
+            .c2_halved = halved("case C, law 2", case_c, joint_deflection),
+            .c2_doubled = doubled("case C, law 2", case_c, joint_deflection),
+            .a_soft = run("case A on soil half as stiff", a_soft, none),
+            .b_on_soil_of_a = run("case B on the soil of case A", b_on_soil_of_a, none),
+            .b_at_angle_of_a = run("case B at the boom angle of case A", b_at_angle_of_a, none)};
+}
+
+ThesisRuns rerun(const ThesisRuns& runs, std::string_view case_name,
+                 const std::function<void(plant::CraneParameters&)>& change) {
+    ThesisRuns changed = runs;
+    for (ThesisRun ThesisRuns::*member : members) {
+        ThesisRun& run = changed.*member;
+        if (case_name.empty() || run.options().crane_case.name == case_name) {
+            SimulationOptions options = run.options();
+            change(options.crane_case.crane);
+            run = ThesisRun(run.name(), options);
+        }
+    }
+    return changed;
 }
 
 double peak(const ThesisRun& run, Signal signal, double from_s, double to_s) {
@@ -180,7 +300,24 @@ double dominant_Hz(const ThesisRun& run, Signal signal, double from_Hz, double t
 }
 
 std::vector<SpectralPeak> visible_peaks(const ThesisRun& run, Signal signal) {
-    return peaks(run.spectrum(signal), least_Hz, visible_share);
+    return peaks(run.spectrum(signal), slowest_Hz, visible_share);
+}
+
+double visible_count(const ThesisRun& run, Signal signal) {
+    return static_cast<double>(visible_peaks(run, signal).size());
+}
+
+double lowest_visible_Hz(const ThesisRun& run, Signal signal) {
+    const std::vector<SpectralPeak> found = visible_peaks(run, signal);
+    return found.empty() ? 0.0 : std::ranges::min(found, {}, &SpectralPeak::frequency_Hz).frequency_Hz;
+}
+
+double left_over(const ThesisRun& run, Signal signal) {
+    return fluctuation(run, signal, run.duration_s() - 3.0) / fluctuation(run, signal, 0.0, 2.0);
+}
+
+double residual_share(const ThesisRun& run, const ThesisRun& other) {
+    return run.figures().residual_energy_J / other.figures().residual_energy_J;
 }
 
 double spectral_likeness(const ThesisRun& run, Signal signal, const ThesisRun& other, Signal other_signal) {
@@ -189,7 +326,7 @@ double spectral_likeness(const ThesisRun& run, Signal signal, const ThesisRun& o
     double both = 0.0, left_squares = 0.0, right_squares = 0.0;
     for (std::size_t i = 0; i < std::min(left.amplitude.size(), right.amplitude.size()); ++i) {
         const double frequency_Hz = static_cast<double>(i) * left.spacing_Hz;
-        if (frequency_Hz < least_Hz || frequency_Hz > compared_up_to_Hz) {
+        if (frequency_Hz < slowest_Hz || frequency_Hz > compared_up_to_Hz) {
             continue;
         }
         both += left.amplitude[i] * right.amplitude[i];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "hil/reproduction/spectrum.hpp"
 #include "hil/simulation.hpp"
 #include "plant/equilibrium.hpp"
+#include "plant/linear_modes.hpp"
 
 namespace steadyboom::hil::reproduction {
 
@@ -39,49 +41,64 @@ enum class Signal : int {
     count
 };
 
+/// "R1_m", "pendent_tension_N" and so on.
+[[nodiscard]] std::string_view name_of(Signal signal) noexcept;
+
 /// One run of the thesis: the law sees the true state, nothing is sampled. Signals have one value every `period_s` from
-/// t_s = 0 to `duration_s`.
+/// t_s = 0 to `duration_s`. Copies share what was computed, which nothing changes.
 class ThesisRun {
   public:
     /// Runs hil::simulate. Throws what it throws.
     ThesisRun(std::string name, const SimulationOptions& options);
 
-    [[nodiscard]] const std::string& name() const noexcept { return name_; }
-    [[nodiscard]] const SimulationOptions& options() const noexcept { return options_; }
-    [[nodiscard]] const RunFigures& figures() const noexcept { return figures_; }
-    [[nodiscard]] double duration_s() const noexcept { return options_.duration_s; }
-    [[nodiscard]] double period_s() const noexcept { return options_.output_period_s; }
+    [[nodiscard]] const std::string& name() const noexcept { return record_->name; }
+    [[nodiscard]] const SimulationOptions& options() const noexcept { return record_->options; }
+    [[nodiscard]] const RunFigures& figures() const noexcept { return record_->figures; }
+    [[nodiscard]] double duration_s() const noexcept { return record_->options.duration_s; }
+    [[nodiscard]] double period_s() const noexcept { return record_->options.output_period_s; }
+    [[nodiscard]] const plant::Equilibrium& rest() const noexcept { return record_->rest; }
+    /// About the equilibrium, valve shut, ascending in frequency.
+    [[nodiscard]] const std::vector<plant::LinearMode>& modes() const noexcept { return record_->modes; }
     [[nodiscard]] const std::vector<double>& signal(Signal signal) const noexcept {
-        return signals_[static_cast<std::size_t>(signal)];
+        return record_->signals[static_cast<std::size_t>(signal)];
     }
     [[nodiscard]] const Spectrum& spectrum(Signal signal) const noexcept {
-        return spectra_[static_cast<std::size_t>(signal)];
+        return record_->spectra[static_cast<std::size_t>(signal)];
     }
+    /// The crane at a sample; `sample` is an index into every signal.
+    [[nodiscard]] plant::CraneState state(std::size_t sample) const noexcept;
     /// Energy of the motion that the soil's damping took, J, at most 0: the soil's work less what its spring holds at
     /// the end (full contact at both ends).
-    [[nodiscard]] double soil_work_J() const noexcept { return soil_work_J_; }
+    [[nodiscard]] double soil_work_J() const noexcept { return record_->soil_work_J; }
     /// Energy of the motion that the piston gave, J, negative if it took some: the integral of T_P - T_P0 over X_p.
     /// What lifts the standing boom is not in it.
-    [[nodiscard]] double piston_work_J() const noexcept { return piston_work_J_; }
+    [[nodiscard]] double piston_work_J() const noexcept { return record_->piston_work_J; }
 
   private:
-    std::string name_;
-    SimulationOptions options_;
-    RunFigures figures_;
-    std::vector<std::vector<double>> signals_;
-    std::vector<Spectrum> spectra_;
-    double soil_work_J_ = 0.0;
-    double piston_work_J_ = 0.0;
+    struct Record {
+        std::string name;
+        SimulationOptions options;
+        plant::Equilibrium rest;
+        std::vector<plant::LinearMode> modes;
+        RunFigures figures;
+        std::vector<std::vector<double>> signals;
+        std::vector<Spectrum> spectra;
+        double soil_work_J = 0.0;
+        double piston_work_J = 0.0;
+    };
+    std::shared_ptr<const Record> record_;
 };
 
-/// Every run that a claim of chapters 5, 7 and 8 is judged by: cases A, B and C without control, laws 1 to 3 on A, law
-/// 2 on B and C, law 2 on C with twice its gain, and case A on soil with half its shear modulus.
+/// Every run that a claim of chapters 5, 7 and 8 is judged by: the cases without control, laws 1 to 3 on A, law 2 on B
+/// and C, each law with half and twice its gains, case A on soil with half its shear modulus, and case B with case A's
+/// soil or boom angle.
 struct ThesisRuns {
-    ThesisRun a, b, c, a1, a2, a3, b2, c2, c2_doubled, a_soft;
+    ThesisRun a, b, c, a1, a2, a3, b2, c2;
+    ThesisRun a1_halved, a1_doubled, a2_halved, a2_doubled, a3_halved, a3_doubled;
+    ThesisRun b2_halved, b2_doubled, c2_halved, c2_doubled;
+    ThesisRun a_soft, b_on_soil_of_a, b_at_angle_of_a;
 
-    [[nodiscard]] std::vector<const ThesisRun*> all() const {
-        return {&a, &a1, &a2, &a3, &b, &b2, &c, &c2, &c2_doubled, &a_soft};
-    }
+    [[nodiscard]] std::vector<const ThesisRun*> all() const;
 };
 
 struct RunSettings {
@@ -91,6 +108,11 @@ struct RunSettings {
 
 /// Runs them; `progress` is told of each before it starts. Throws what load_case and simulate throw.
 [[nodiscard]] ThesisRuns run_thesis(const RunSettings& settings, const std::function<void(std::string_view)>& progress);
+
+/// `runs` with every run of the named case, or of all cases if the name is empty, made anew after `change`; the others
+/// are shared. Throws what simulate throws.
+[[nodiscard]] ThesisRuns rerun(const ThesisRuns& runs, std::string_view case_name,
+                               const std::function<void(plant::CraneParameters&)>& change);
 
 // Measures of signals. Times in s since the brake event.
 
@@ -106,11 +128,21 @@ struct RunSettings {
                                  double from_s = 0.0);
 /// Last time at which |signal| is above `level`.
 [[nodiscard]] double settling_time_s(const ThesisRun& run, Signal signal, double level);
-/// Frequency of the largest peak above 0.3 Hz, three bins of a run of 10 s; 0 if there is none.
-[[nodiscard]] double dominant_Hz(const ThesisRun& run, Signal signal, double from_Hz = 0.3, double to_Hz = 60.0);
-/// Peaks above 0.3 Hz of at least a fifth of the largest, which is what a printed plot shows.
+/// Slowest vibration that counts as a frequency: the resolution of 10 s under a Hann window, 4/T. What is slower cannot
+/// be told from a drift of the mean.
+inline constexpr double slowest_Hz = 0.4;
+/// Frequency of the largest peak between two frequencies; 0 if there is none.
+[[nodiscard]] double dominant_Hz(const ThesisRun& run, Signal signal, double from_Hz = slowest_Hz, double to_Hz = 60.0);
+/// Peaks from slowest_Hz on of at least a fifth of the largest, which is what a printed plot shows.
 [[nodiscard]] std::vector<SpectralPeak> visible_peaks(const ThesisRun& run, Signal signal);
-/// Cosine between two amplitude spectra up to 30 Hz: 1 if they are proportional, 0 if they share nothing.
+[[nodiscard]] double visible_count(const ThesisRun& run, Signal signal);
+/// The slowest of the visible peaks; 0 if there is none.
+[[nodiscard]] double lowest_visible_Hz(const ThesisRun& run, Signal signal);
+/// How much of a motion's first two seconds is left in its last three.
+[[nodiscard]] double left_over(const ThesisRun& run, Signal signal);
+/// Residual energy of one run over that of another.
+[[nodiscard]] double residual_share(const ThesisRun& run, const ThesisRun& other);
+/// Cosine between two amplitude spectra from slowest_Hz to 30 Hz: 1 if they are proportional, 0 if they share nothing.
 [[nodiscard]] double spectral_likeness(const ThesisRun& run, Signal signal, const ThesisRun& other,
                                        Signal other_signal);
 

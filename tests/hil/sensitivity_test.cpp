@@ -3,124 +3,119 @@
 #include <map>
 #include <set>
 #include <stdexcept>
-#include <tuple>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hil/case_file.hpp"
-#include "hil/simulation.hpp"
-
-namespace steadyboom::hil {
+namespace steadyboom::hil::reproduction {
 namespace {
 
-using controllers::LawKind;
-using testing::Contains;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr auto no_progress = [](int, int) {};
+/// Half a second: enough to see what is varied, not for a verdict.
+const ThesisRuns& short_runs() {
+    static const ThesisRuns made = run_thesis({.duration_s = 0.5, .period_s = 0.005}, [](std::string_view) {});
+    return made;
+}
+const Sensitivity& of_short_runs() {
+    static const Sensitivity made = run_sensitivity(short_runs(), [](int, int) {});
+    return made;
+}
 
-TEST(Sensitivity, RunsEveryVariationWithAndWithoutLaw2AndCountsThem) {
-    int calls = 0;
-    const Sensitivity sensitivity = run_sensitivity(
-        [&](int done, int all) {
-            EXPECT_EQ(done, ++calls);
-            EXPECT_EQ(all, 80);
-        },
-        0.3);
-    EXPECT_EQ(calls, 80);
-    EXPECT_EQ(sensitivity.rows.size(), 80U);
-    std::set<std::tuple<std::string, std::string, std::string, LawKind>> runs;
-    std::set<std::string> varied;
-    for (const SensitivityRow& row : sensitivity.rows) {
-        EXPECT_TRUE(runs.insert({row.case_name, row.parameter, row.value, row.law}).second) << row.parameter;
-        varied.insert(row.parameter);
+const Variation& variation(const Sensitivity& sensitivity, std::string_view name) {
+    for (const Variation& one : sensitivity.variations) {
+        if (name_of(one) == name) {
+            return one;
+        }
     }
+    throw std::out_of_range(std::string(name));
+}
+
+TEST(Sensitivity, VariesEveryParameterThatHasARangeAndCountsTheVariations) {
+    int calls = 0;
+    const Sensitivity sensitivity = run_sensitivity(short_runs(), [&](int done, int all) {
+        EXPECT_EQ(done, ++calls);
+        EXPECT_EQ(all, 19);
+    });
+    EXPECT_EQ(calls, 19);
+    std::set<std::string> names;
+    std::set<std::string> parameters;
+    for (const Variation& one : sensitivity.variations) {
+        EXPECT_TRUE(names.insert(name_of(one)).second) << name_of(one);
+        parameters.insert(one.parameter);
+    }
+    EXPECT_EQ(names.size(), 19U);
     for (const SensitivityRange& range : sensitivity.ranges) {
-        EXPECT_EQ(varied.erase(range.parameter), 1U) << range.parameter;
+        EXPECT_EQ(parameters.erase(range.parameter), 1U) << range.parameter;
         EXPECT_THAT(range.reason, Not(IsEmpty()));
     }
-    EXPECT_THAT(varied, ElementsAre("nominal"));
+    EXPECT_THAT(parameters, IsEmpty());
 }
 
-TEST(Sensitivity, VariedRunIsTheSimulationOfTheVariedCase) {
-    constexpr double duration_s = 0.3;
-    const Sensitivity sensitivity = run_sensitivity(no_progress, duration_s);
-    Case soft = load_case("case-b");
-    soft.crane.soil.poisson_ratio = 0.40;
-    const RunFigures expected =
-        simulate({.crane_case = soft, .law = LawKind::joint_deflection, .duration_s = duration_s, .step_s = {}},
-                 [](const TruthSample&) {});
-    int found = 0;
-    for (const SensitivityRow& row : sensitivity.rows) {
-        if (row.case_name == "case-b" && row.parameter == "soil.poisson_ratio" && row.value == "0.4" &&
-            row.law == LawKind::joint_deflection) {
-            EXPECT_EQ(row.figures.peak_R1_m, expected.peak_R1_m);
-            EXPECT_EQ(row.figures.residual_energy_J, expected.residual_energy_J);
-            ++found;
-        }
+TEST(Sensitivity, VariedRowsAreThoseOfTheVariedRuns) {
+    const ThesisRuns varied =
+        rerun(short_runs(), "", [](plant::CraneParameters& crane) { crane.soil.poisson_ratio = 0.40; });
+    const std::vector<Row> expected = judge(varied);
+    const std::vector<Row>& rows = variation(of_short_runs(), "soil.poisson_ratio = 0.4").rows;
+    ASSERT_EQ(rows.size(), expected.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        EXPECT_EQ(rows[i].verdict, expected[i].verdict) << rows[i].id;
+        EXPECT_EQ(rows[i].here, expected[i].here) << rows[i].id;
     }
-    EXPECT_EQ(found, 1);
 }
 
-TEST(Sensitivity, CraneThatCannotStandIsARowWithItsFailureAndAChangedVerdict) {
-    const Sensitivity sensitivity = run_sensitivity(no_progress, 0.3);
-    int failures = 0;
-    for (const SensitivityRow& row : sensitivity.rows) {
-        if (!row.failure.empty()) {
-            EXPECT_EQ(row.case_name, "case-c");
-            EXPECT_EQ(row.value, "6.57e+04");
-            EXPECT_THAT(row.failure, HasSubstr("cannot stand"));
-            ++failures;
+TEST(Sensitivity, PendentOfCaseBLeavesRowsOfTheOtherCasesAsTheyAre) {
+    const std::vector<Row> nominal = judge(short_runs());
+    const std::vector<Row>& rows = variation(of_short_runs(), "ropes.pendent_stiffness_N_m = 5.155e+06 in case-b").rows;
+    int touched = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i].id.starts_with("5-A") || rows[i].id.starts_with("7-A") || rows[i].id.starts_with("7-C")) {
+            EXPECT_EQ(rows[i].here, nominal[i].here) << rows[i].id;
         }
+        touched += rows[i].here == nominal[i].here ? 0 : 1;
     }
-    EXPECT_EQ(failures, 2);
-    for (const SensitivityVerdict& verdict : sensitivity.verdicts) {
-        if (verdict.case_name == "case-c") {
-            EXPECT_THAT(verdict.changed, Contains("ropes.pendent_stiffness_N_m = 6.57e+04 (no run)"));
+    EXPECT_GT(touched, 20);
+}
+
+TEST(Sensitivity, CraneThatCannotStandIsAVariationWithItsFailure) {
+    for (const Variation& one : of_short_runs().variations) {
+        const bool printed_c = name_of(one) == "ropes.pendent_stiffness_N_m = 6.57e+04 in case-c";
+        EXPECT_EQ(one.rows.empty(), printed_c) << name_of(one);
+        EXPECT_EQ(!one.failure.empty(), printed_c) << name_of(one);
+        if (printed_c) {
+            EXPECT_THAT(one.failure, HasSubstr("cannot stand"));
         }
     }
 }
 
-/// Over the thesis's 10 s. Verdicts that hang on less than a few per cent are not held.
-TEST(Sensitivity, VerdictsOfCaseAHoldThroughoutAndThoseOfBAndCHangOnThePendent) {
-    const Sensitivity sensitivity = run_sensitivity(no_progress);
-    std::map<std::pair<std::string, std::string>, SensitivityVerdict> verdicts;
-    for (const SensitivityVerdict& verdict : sensitivity.verdicts) {
-        EXPECT_TRUE(verdicts.insert({{verdict.case_name, verdict.claim}, verdict}).second) << verdict.claim;
-        if (verdict.case_name == "case-a") {
-            EXPECT_THAT(verdict.changed, IsEmpty()) << verdict.claim;
-            EXPECT_EQ(verdict.nominal, verdict.claim != "the pendent goes slack, uncontrolled") << verdict.claim;
-        }
+/// Over the thesis's 10 s, and one variation of 19. Rows that hang on less than a few per cent are not held.
+TEST(Sensitivity, SofterPendentInCaseBMakesALaterShockOutdoTheFirstAndTurnsNothingInCaseA) {
+    const ThesisRuns runs = run_thesis({}, [](std::string_view) {});
+    const std::vector<Row> rows = judge(runs);
+    Sensitivity sensitivity;
+    sensitivity.variations.push_back(
+        {.parameter = "ropes.pendent_stiffness_N_m",
+         .value = "half",
+         .case_name = "case-b",
+         .rows = judge(
+             rerun(runs, "case-b", [](plant::CraneParameters& crane) { crane.ropes.pendent_stiffness_N_m *= 0.5; })),
+         .failure = {}});
+    std::map<std::string, TurnedRow> turned;
+    for (const TurnedRow& row : turned_rows(rows, sensitivity)) {
+        turned.insert({row.row->id, row});
+        ASSERT_EQ(row.turns.size(), 1U);
+        EXPECT_EQ(row.turns[0].variation, &sensitivity.variations[0]);
+        EXPECT_NE(row.turns[0].to, row.row->verdict);
+        EXPECT_FALSE(row.row->id.starts_with("5-A") || row.row->id.starts_with("7-A")) << row.row->id;
     }
-    const auto verdict = [&](const char* case_name, const char* claim) { return verdicts.at({case_name, claim}); };
-
-    const SensitivityVerdict slack_b = verdict("case-b", "the pendent goes slack, uncontrolled");
-    EXPECT_TRUE(slack_b.nominal);
-    EXPECT_THAT(slack_b.changed, ElementsAre("ropes.pendent_stiffness_N_m = 3.49e+05"));
-    const SensitivityVerdict slack_c = verdict("case-c", "the pendent goes slack, uncontrolled");
-    EXPECT_FALSE(slack_c.nominal);
-    EXPECT_THAT(slack_c.changed, ElementsAre(HasSubstr("(no run)")));
-    EXPECT_TRUE(verdict("case-c", "the load line goes slack, uncontrolled").nominal);
-
-    const SensitivityVerdict early_b = verdict("case-b", "the largest R1 comes within the first 0.5 s, uncontrolled");
-    EXPECT_TRUE(early_b.nominal);
-    EXPECT_THAT(early_b.changed, Contains("ropes.pendent_stiffness_N_m = 5.155e+06"));
-    EXPECT_FALSE(verdict("case-c", "the largest R1 comes within the first 0.5 s, uncontrolled").nominal);
-
-    EXPECT_TRUE(verdict("case-b", "law 2 leaves less than half the residual energy").nominal);
-    EXPECT_FALSE(verdict("case-c", "law 2 leaves less than half the residual energy").nominal);
-    EXPECT_THAT(verdict("case-c", "law 2 lowers the residual energy").changed,
-                testing::IsSupersetOf({"ropes.pendent_stiffness_N_m = 9.866e+06", "actuator.valve_model = nonlinear"}));
-}
-
-TEST(Sensitivity, DurationMustBePositive) {
-    EXPECT_THROW((void)run_sensitivity(no_progress, 0.0), std::invalid_argument);
-    EXPECT_THROW((void)run_sensitivity(no_progress, -1.0), std::invalid_argument);
+    ASSERT_TRUE(turned.contains("5-B-05"));
+    EXPECT_EQ(turned.at("5-B-05").row->verdict, Verdict::does_not_hold);
+    EXPECT_EQ(turned.at("5-B-05").turns[0].to, Verdict::holds_in_kind);
+    EXPECT_LT(turned.size(), rows.size() / 4);
 }
 
 }  // namespace
-}  // namespace steadyboom::hil
+}  // namespace steadyboom::hil::reproduction
