@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -49,6 +50,50 @@ TEST(Spectrum, SineBetweenBinsLosesAtMostTheHannScallopAndTheParabolaFindsItAgai
     const double worst_dB = 20.0 * std::log10(worst_bin);
     EXPECT_GT(worst_dB, -1.5);
     EXPECT_LT(worst_dB, -1.3);  // it is a Hann window: the textbook's 1.42 dB
+}
+
+TEST(Spectrum, EachOfSeveralSinesStandsWithItsOwnAmplitude) {
+    std::vector<double> signal(samples, 0.0);
+    for (const auto& [frequency_Hz, amplitude] : {std::pair{1.4, 3.0}, {3.7, 0.2}, {18.3, 0.01}}) {
+        const std::vector<double> one = sine(frequency_Hz, amplitude, frequency_Hz);
+        for (std::size_t i = 0; i < samples; ++i) {
+            signal[i] += one[i];
+        }
+    }
+    const Spectrum spectrum = amplitude_spectrum(signal, period_s);
+    EXPECT_NEAR(largest_amplitude(spectrum, 1.0, 2.0), 3.0, 0.03);
+    EXPECT_NEAR(largest_amplitude(spectrum, 3.0, 5.0), 0.2, 0.002);
+    EXPECT_NEAR(largest_amplitude(spectrum, 15.0, 20.0), 0.01, 1e-4);
+}
+
+TEST(Spectrum, AmplitudeDependsNeitherOnTheRecordsLengthNorOnTheRateOrTheParityOfItsSamples) {
+    for (const std::size_t count : {500U, 501U, 2'000U, 2'001U}) {
+        const double T_s = 10.0;
+        const double step_s = T_s / static_cast<double>(count);
+        std::vector<double> signal(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            signal[i] = 1.7 * std::cos(2.0 * std::numbers::pi * 4.0 * static_cast<double>(i) * step_s);
+        }
+        const Spectrum spectrum = amplitude_spectrum(signal, step_s);
+        EXPECT_NEAR(spectrum.spacing_Hz, 0.1, 1e-12) << count;
+        EXPECT_NEAR(spectrum.amplitude[40], 1.7, 1e-3) << count;
+    }
+}
+
+TEST(Spectrum, SmallSineBesideOneAHundredTimesLargerIsSeenTwoHertzAwayAndLostInItsSkirtThreeBinsAway) {
+    const auto beside = [](double apart_Hz) {
+        std::vector<double> signal = sine(5.05, 1.0, 0.0);  // between bins, where leakage is worst
+        const std::vector<double> small = sine(5.0 + apart_Hz, 0.01, 1.0);
+        for (std::size_t i = 0; i < samples; ++i) {
+            signal[i] += small[i];
+        }
+        return amplitude_spectrum(signal, period_s);
+    };
+    EXPECT_NEAR(largest_amplitude(beside(2.0), 6.5, 7.5), 0.01, 2e-4);
+    const auto found = peaks(beside(2.0), 0.4, 0.005);
+    ASSERT_EQ(found.size(), 2U);
+    EXPECT_NEAR(found[1].frequency_Hz, 7.0, 0.01);
+    EXPECT_EQ(peaks(beside(0.3), 0.4, 0.005).size(), 1U);
 }
 
 TEST(Spectrum, TwoSinesFourBinsApartAreTwoPeaksAndOneBinApartAreNot) {

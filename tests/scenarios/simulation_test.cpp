@@ -1,5 +1,6 @@
 // `simulate`, the thesis's own way, against what the model page says a right implementation shows.
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,22 @@ TEST(Simulation, FixedStepsAndAdaptiveStepsAgreeAtEveryOutput) {
         EXPECT_LT(difference.segment<plant::coordinate_count>(plant::velocity_offset).cwiseAbs().maxCoeff(), 2e-4)
             << fixed.samples[i].t_s;
     }
+}
+
+TEST(Simulation, TighterToleranceComesNearerAndOneOutOfRangeIsRefused) {
+    const auto end = [](double tolerance) {
+        plant::CraneState last;
+        hil::simulate({.crane_case = hil::load_case("case-a"), .duration_s = 2.0, .tolerance = tolerance},
+                      [&](const TruthSample& sample) { last = sample.state; });
+        return last;
+    };
+    const plant::CraneState best = end(1e-12);
+    const double loose = (end(1e-4) - best).norm();
+    const double middling = (end(1e-7) - best).norm();
+    EXPECT_LT(middling, 0.1 * loose);
+    EXPECT_LT((end(1e-9) - best).norm(), 0.1 * middling);
+    EXPECT_THROW((void)end(0.0), std::invalid_argument);
+    EXPECT_THROW((void)end(0.1), std::invalid_argument);
 }
 
 TEST(Simulation, OutputsComeAtTheirTimesAndTheLastAtTheEnd) {
