@@ -62,6 +62,7 @@ constexpr std::array reason_rows = {
     ReasonRow{reason_spoof, ReasonEffect::immediate, "a process on this machine sends as a device"},
     ReasonRow{reason_frames_lost, ReasonEffect::warn, "the CAN interface lost frames"},
     ReasonRow{reason_bus_setup, ReasonEffect::warn, "the CAN interface is not set up as configured, or not watched"},
+    ReasonRow{reason_device_not_operational, ReasonEffect::stop, "a required device is not operational"},
 };
 
 constexpr std::uint32_t reasons_with(ReasonEffect effect) noexcept {
@@ -87,6 +88,11 @@ ValveState expected_state(ValveMode mode) noexcept {
             return ValveState::active;
     }
     return ValveState::not_ready;
+}
+
+bool is_fault(ValveState state) noexcept {
+    return state == ValveState::fault_hold || state == ValveState::fault_reaction ||
+           state == ValveState::fault_disabled;
 }
 
 double checked_s(double time_s, const char* name) {
@@ -133,7 +139,7 @@ std::uint32_t Interlock::present_faults(const CraneMeasurement& measured, const 
     std::uint32_t faults = health.bus_reasons;
     const bool channels_good = std::ranges::all_of(required_channels, [&](plant::Sensor sensor) {
         const auto i = static_cast<std::size_t>(sensor);
-        return measured.age_ticks[i] <= max_age_ticks && (measured.valid[i] || measured.age_ticks[i] > 0);
+        return measured.valid[i] && measured.age_ticks[i] <= max_age_ticks;
     });
     if (!channels_good) {
         faults |= reason_channel_missing;
@@ -157,6 +163,9 @@ std::uint32_t Interlock::present_faults(const CraneMeasurement& measured, const 
     }
     if (health.guard_violated) {
         faults |= reason_guard;
+    }
+    if (health.device_missing) {
+        faults |= reason_device_not_operational;
     }
     return faults;
 }
@@ -204,7 +213,10 @@ Permission Interlock::evaluate(const CraneMeasurement& measured, const CraneEsti
                                OperatorIntent intent) noexcept {
     const std::uint32_t present = present_faults(measured, estimate, health);
     const std::uint32_t faults = present & ~warning;
-    clear_ticks_ = faults == reason_none ? std::min(clear_ticks_ + 1, ready_ticks_) : 0;
+    // A valve that waits in a fault for its reset does not hinder the operator's, which lets it be reset.
+    const bool valve_awaits_reset = state_ == InterlockState::fault_hold && is_fault(measured.valve_state);
+    const std::uint32_t in_the_way = faults & ~(valve_awaits_reset ? std::uint32_t{reason_valve_not_following} : 0U);
+    clear_ticks_ = in_the_way == reason_none ? std::min(clear_ticks_ + 1, ready_ticks_) : 0;
     accepted_ = obey(intent, faults);
 
     const bool armed = state_ == InterlockState::hold || moves(state_);
@@ -265,6 +277,7 @@ Permission Interlock::evaluate(const CraneMeasurement& measured, const CraneEsti
         permit.cutoff_energised = state_ == InterlockState::hold;
         permit.reasons |= reason_not_armed;
     }
+    permit.valve_reset = state_ == InterlockState::standby;
     last_mode_ = permit.mode;
     return permit;
 }

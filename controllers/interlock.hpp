@@ -52,6 +52,7 @@ enum InterlockReason : std::uint32_t {
     reason_spoof = 1U << 16,               ///< a process on this machine plays a device
     reason_frames_lost = 1U << 17,         ///< warns: the interface lost frames before they were read
     reason_bus_setup = 1U << 18,           ///< warns: the interface is not set up as configured, or nobody watches it
+    reason_device_not_operational = 1U << 19,  ///< a required device is missing, wrong or not started
 };
 
 /// Largest authority while a limiting reason lasts.
@@ -67,6 +68,7 @@ struct Health {
     bool send_failed = false;                 ///< the newest command did not leave this machine
     bool overran = false;                     ///< a deadline was missed since the previous tick
     bool guard_violated = false;              ///< the guard rejected the previous tick's command
+    bool device_missing = false;              ///< a required device is not operational
     std::uint32_t bus_reasons = reason_none;  ///< InterlockReason bits of bus and link in this tick
 };
 

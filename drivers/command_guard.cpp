@@ -66,6 +66,7 @@ GuardedCommand CommandGuard::pass(const plant::LimitedCommand& command, const pl
     passed.opening_nm_ = opening_nm;
     passed.mode_ = permit.mode;
     passed.cutoff_energised_ = permit.cutoff_energised;
+    passed.valve_reset_ = permit.valve_reset && permit.mode == plant::ValveMode::disabled;
     passed.reasons_ = command.reasons;
     return passed;
 }

@@ -13,6 +13,8 @@ class GuardedCommand {
     [[nodiscard]] double opening_m() const noexcept { return 1.0e-9 * opening_nm_; }
     [[nodiscard]] plant::ValveMode mode() const noexcept { return mode_; }
     [[nodiscard]] bool cutoff_energised() const noexcept { return cutoff_energised_; }
+    /// The valve may be asked to leave a fault state; only with ValveMode::disabled.
+    [[nodiscard]] bool valve_reset() const noexcept { return valve_reset_; }
     [[nodiscard]] std::uint32_t reasons() const noexcept { return reasons_; }  ///< plant::LimitReason bits
     [[nodiscard]] bool violated() const noexcept { return (reasons_ & plant::limit_guard) != 0; }
 
@@ -23,6 +25,7 @@ class GuardedCommand {
     std::int32_t opening_nm_ = 0;
     plant::ValveMode mode_ = plant::ValveMode::disabled;
     bool cutoff_energised_ = false;
+    bool valve_reset_ = false;
     std::uint32_t reasons_ = plant::limit_none;
 };
 

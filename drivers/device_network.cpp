@@ -11,13 +11,19 @@ constexpr std::uint8_t all_nodes = 0;
 
 }  // namespace
 
-DeviceNetwork::DeviceNetwork(const NetworkConfig& config) : table_(config) {}
+DeviceNetwork::DeviceNetwork(const NetworkConfig& config) : table_(config) {
+    for (const auto pdo : {Pdo::valve_command, Pdo::safety_outputs}) {
+        if (table_.row(pdo).protection == Protection::e2e) {
+            receivers_[index_of(pdo)].emplace(table_.row(pdo).data_id);
+        }
+    }
+}
 
 std::vector<CanFilter> DeviceNetwork::filters() const {
     std::vector<CanFilter> filters;
     for (const auto& row : table_.messages()) {
         if (row.present && row.from_controller && row.kind != MessageKind::heartbeat) {
-            filters.push_back({row.id});
+            filters.push_back({.id = row.id, .extended = row.extended});
         }
     }
     return filters;
@@ -31,18 +37,60 @@ void DeviceNetwork::receive(std::span<const CanFrame> frames, std::int64_t now_n
         } else if (message == Message::sync) {
             sync_pending_ = true;
             sync_counter_ = frame.data[0];
-        } else if (message == message_of(Pdo::valve_command)) {
-            take_valve_order(frame, now_ns);
-        } else if (message == message_of(Pdo::safety_outputs)) {
-            if (operational(Device::safety_io)) {
+            for (auto& receiver : receivers_) {
+                if (receiver) {
+                    receiver->close_tick();
+                }
+            }
+        } else if (message != Message::none && table_.row(message).kind == MessageKind::pdo) {
+            take_order(table_.row(message), frame, now_ns);
+        }
+    }
+}
+
+void DeviceNetwork::take_order(const MessageRow& row, const CanFrame& frame, std::int64_t now_ns) noexcept {
+    if (!operational(row.device)) {
+        ++status_.not_operational_frames;
+        return;
+    }
+    switch (row.pdo) {
+        case Pdo::safety_outputs:
+            if (believed(row, frame)) {
                 order_.cutoff_energised = read_raw(table_.row(Signal::cutoff_energised), frame) != 0;
                 order_.cutoff_stamp_ns = now_ns;
                 order_.cutoff_ever = true;
-            } else {
-                ++status_.not_operational_frames;
             }
-        }
+            break;
+        case Pdo::valve_command:
+            if (!believed(row, frame)) {
+                twin_.forget();
+            } else if (row.protection == Protection::e2e) {
+                twin_.take_plain(frame, now_ns);
+            } else {
+                take_valve_order(frame, now_ns);
+            }
+            break;
+        case Pdo::valve_twin:
+            if (twin_.take_inverted(frame, now_ns)) {
+                take_valve_order(twin_.plain(), now_ns);
+            } else {
+                const auto& command = receivers_[index_of(Pdo::valve_command)];
+                status_.rejected_orders += command && command->state() == ReceiverState::valid ? 1U : 0U;
+            }
+            break;
+        default:
+            break;
     }
+}
+
+bool DeviceNetwork::believed(const MessageRow& row, const CanFrame& frame) noexcept {
+    auto& receiver = receivers_[index_of(row.pdo)];
+    if (!receiver) {
+        return true;
+    }
+    const bool good = receiver->check(frame) == FrameVerdict::good;
+    status_.rejected_orders += good ? 0U : 1U;
+    return good && receiver->state() == ReceiverState::valid;
 }
 
 Message DeviceNetwork::accepted_message(const CanFrame& frame) noexcept {
@@ -50,11 +98,11 @@ Message DeviceNetwork::accepted_message(const CanFrame& frame) noexcept {
         ++status_.error_frames;
         return Message::none;
     }
-    if (frame.extended || frame.remote) {
+    const auto message = frame.remote ? Message::none : table_.message_with(frame.id, frame.extended);
+    if (message == Message::none && (frame.extended || frame.remote)) {
         ++status_.remote_or_extended_frames;
         return Message::none;
     }
-    const auto message = table_.message_with(frame.id);
     if (message == Message::none || !table_.row(message).from_controller) {
         ++status_.unknown_id_frames;
         return Message::none;
@@ -119,9 +167,10 @@ void DeviceNetwork::restart(Device device) noexcept {
 
 void DeviceNetwork::forget_orders(Device device) noexcept {
     if (device == Device::servo_valve) {
-        order_.mode = plant::ValveMode::disabled;
+        order_.control_word = 0;
         order_.set_point_m = 0.0;
         order_.ever = false;
+        twin_.forget();
     } else if (device == Device::safety_io) {
         order_.cutoff_energised = false;
         order_.cutoff_ever = false;
@@ -129,24 +178,11 @@ void DeviceNetwork::forget_orders(Device device) noexcept {
 }
 
 void DeviceNetwork::take_valve_order(const CanFrame& frame, std::int64_t now_ns) noexcept {
-    if (!operational(Device::servo_valve)) {
-        ++status_.not_operational_frames;
-        return;
-    }
-    const auto mode = static_cast<plant::ValveMode>(read_raw(table_.row(Signal::valve_control_word), frame) & 0x0F);
-    switch (mode) {
-        case plant::ValveMode::disabled:
-        case plant::ValveMode::hold:
-        case plant::ValveMode::active:
-            order_.mode = mode;
-            break;
-        default:
-            order_.mode = plant::ValveMode::disabled;
-            ++status_.unknown_orders;
-    }
+    order_.control_word = static_cast<std::uint16_t>(read_raw(table_.row(Signal::valve_control_word), frame));
     const auto& set_point = table_.row(Signal::valve_set_point);
-    order_.set_point_m = std::clamp(static_cast<double>(read_raw(set_point, frame)) * set_point.scale_unit,
-                                    set_point.lowest_unit, set_point.highest_unit);
+    order_.set_point_m =
+        std::clamp(static_cast<double>(read_raw(set_point, frame)) * set_point.scale_unit + set_point.offset_unit,
+                   set_point.lowest_unit, set_point.highest_unit);
     order_.stamp_ns = now_ns;
     order_.ever = true;
 }
@@ -175,10 +211,13 @@ std::span<const CanFrame> DeviceNetwork::answer_sync(const plant::SensorVector& 
             }
         }
         if (message.pdo == Pdo::valve_status) {
-            write_raw(table_.row(Signal::valve_status_word), static_cast<std::int64_t>(feedback.state), frame);
+            write_raw(table_.row(Signal::valve_status_word), status_word(feedback.status), frame);
         } else if (message.pdo == Pdo::safety_inputs) {
             write_raw(table_.row(Signal::cutoff_open), feedback.cutoff_open ? 1 : 0, frame);
             write_raw(table_.row(Signal::emergency_stop_healthy), feedback.emergency_stop_healthy ? 1 : 0, frame);
+        }
+        if (message.protection == Protection::e2e) {
+            protect(frame, message.data_id, protection_counter(sync_counter_), protection_quality_good);
         }
         answers_[count++] = frame;
     }

@@ -2,23 +2,26 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "drivers/can_bus.hpp"
 #include "drivers/can_frame.hpp"
+#include "drivers/cia408.hpp"
 #include "drivers/device_table.hpp"
+#include "drivers/inverted_twin.hpp"
+#include "drivers/protection.hpp"
 #include "plant/crane_measurement.hpp"
-#include "plant/valve_command.hpp"
 
 namespace steadyboom::drivers {
 
 /// What the valve and the cut-off output were last told.
 struct ValveOrder {
-    plant::ValveMode mode = plant::ValveMode::disabled;  ///< disabled too when the control word asks for no known mode
-    double set_point_m = 0.0;                            ///< at most the spool's travel
-    std::int64_t stamp_ns = 0;                           ///< when the last valve order came
-    bool ever = false;                                   ///< a valve order came since the valve started
+    std::uint16_t control_word = 0;  ///< ControlBit bits; 0 before the first order
+    double set_point_m = 0.0;        ///< at most the spool's travel
+    std::int64_t stamp_ns = 0;       ///< when the last valve order came
+    bool ever = false;               ///< a valve order came since the valve started
     bool cutoff_energised = false;
     std::int64_t cutoff_stamp_ns = 0;  ///< when the last cut-off order came
     bool cutoff_ever = false;
@@ -26,7 +29,7 @@ struct ValveOrder {
 
 /// What the valve and the safety inputs report beside the sensors.
 struct ValveFeedback {
-    plant::ValveState state = plant::ValveState::not_ready;
+    ValveStatus status;
     bool cutoff_open = false;
     bool emergency_stop_healthy = true;
 };
@@ -39,7 +42,8 @@ struct DeviceNetworkStatus {
     std::uint64_t remote_or_extended_frames = 0;
     std::uint64_t error_frames = 0;
     std::uint64_t not_operational_frames = 0;  ///< process data for a node that is not operational
-    std::uint64_t unknown_orders = 0;          ///< NMT commands and control words that mean nothing
+    std::uint64_t unknown_orders = 0;          ///< NMT commands that mean nothing
+    std::uint64_t rejected_orders = 0;         ///< wrong checksum or counter, twin missing or not the inverse
 };
 
 /// The crane's side of the network: all its devices in one object, each with an NMT state of its own. Allocates nothing
@@ -49,7 +53,9 @@ class DeviceNetwork {
     /// Throws std::invalid_argument as DeviceTable does.
     explicit DeviceNetwork(const NetworkConfig& config);
 
-    /// Obeys NMT, takes orders (operational nodes only), notes SYNC.
+    /// Obeys NMT, takes orders (operational nodes only), notes SYNC. Orders to a protected device count only while
+    /// their message is valid (ProtectedReceiver, whose ticks end with SYNC), the valve's only together with their
+    /// twin.
     void receive(std::span<const CanFrame> frames, std::int64_t now_ns) noexcept;
 
     [[nodiscard]] const ValveOrder& valve_order() const noexcept { return order_; }
@@ -90,6 +96,8 @@ class DeviceNetwork {
     [[nodiscard]] Message accepted_message(const CanFrame& frame) noexcept;
     void obey_nmt(const CanFrame& frame) noexcept;
     void obey_nmt(Device device, NmtCommand command) noexcept;
+    [[nodiscard]] bool believed(const MessageRow& row, const CanFrame& frame) noexcept;
+    void take_order(const MessageRow& row, const CanFrame& frame, std::int64_t now_ns) noexcept;
     void take_valve_order(const CanFrame& frame, std::int64_t now_ns) noexcept;
     void forget_orders(Device device) noexcept;
     [[nodiscard]] bool operational(Device device) const noexcept { return state(device) == NodeState::operational; }
@@ -98,6 +106,8 @@ class DeviceNetwork {
     DeviceNetworkStatus status_;
     std::array<Node, device_count> nodes_;  ///< the controller's entry is unused
     std::array<bool, message_count> message_silent_{};
+    std::array<std::optional<ProtectedReceiver>, pdo_count> receivers_;  ///< of the protected RPDOs
+    InvertedTwin twin_;
     ValveOrder order_;
     bool sync_pending_ = false;
     std::uint8_t sync_counter_ = 0;

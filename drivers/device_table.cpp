@@ -22,6 +22,7 @@ constexpr std::uint32_t next_pdo_code = 0x100;  ///< from PDO n to PDO n + 1
 constexpr std::uint32_t heartbeat_code = 0x700;
 
 constexpr std::int64_t ns_per_ms = 1'000'000;
+constexpr std::uint32_t extended_id_count = 1U << 29U;
 
 /// What a signal feeds, and which status byte speaks for it.
 struct Meaning {
@@ -147,6 +148,10 @@ void check_devices(const NetworkConfig& config) {
         if (d.heartbeat_ms < 0 || d.heartbeat_ms > 65'535) {
             refuse(key_of(device, "heartbeat_ms"), d.heartbeat_ms, "allowed is 0 to 65535");
         }
+        if (!d.canopen && (d.heartbeat_ms != 0 || device == Device::controller)) {
+            refuse(key_of(device, "canopen"), "false",
+                   device == Device::controller ? "allowed is true" : "allowed with heartbeat_ms = 0 alone");
+        }
         const bool timeout_fits =
             d.heartbeat_ms == 0 ? d.heartbeat_timeout_ms == 0 : d.heartbeat_timeout_ms > d.heartbeat_ms;
         if (!timeout_fits && device != Device::controller) {
@@ -171,7 +176,10 @@ void check_pdos(const NetworkConfig& config) {
                    timer ? "allowed is at least 1 and at most one tick, so that each tick has a sample"
                          : "allowed is 0, as this PDO is not sent by a timer");
         }
-        for (std::size_t j = 0; j < i; ++j) {
+        if (p.extended_id >= extended_id_count) {
+            refuse(key_of(pdo, "extended_id"), p.extended_id, "allowed is 0 to 536870911 (29 bits)");
+        }
+        for (std::size_t j = 0; j < i && pdo != Pdo::valve_twin; ++j) {
             if (p.data_id == config.pdos[j].data_id) {
                 refuse(key_of(pdo, "data_id"), p.data_id,
                        "pdo." + std::string(name_of(static_cast<Pdo>(j))) +
@@ -323,6 +331,10 @@ MessageRow pdo_row(const NetworkConfig& config, Pdo pdo) {
     row.device = device;
     row.pdo = pdo;
     row.id = (out ? rpdo1_code : tpdo1_code) + (p.number - 1U) * next_pdo_code + config[device].node_id;
+    if (p.extended_id != 0) {
+        row.id = p.extended_id;
+        row.extended = true;
+    }
     row.length_bytes =
         static_cast<std::uint8_t>(values_bytes(config, pdo) + (is_protected ? protection_bytes : std::uint8_t{0}));
     row.from_controller = out;
@@ -340,6 +352,7 @@ MessageRow service_row(const NetworkConfig& config, MessageKind kind, Device dev
     row.kind = kind;
     row.device = device;
     const std::string name(name_of(device));
+    row.present = d.canopen;
     switch (kind) {
         case MessageKind::heartbeat:
             row.message = heartbeat_of(device);
@@ -356,7 +369,7 @@ MessageRow service_row(const NetworkConfig& config, MessageKind kind, Device dev
             row.name = name + "_emergency";
             row.id = emergency_code + d.node_id;
             row.length_bytes = 8;
-            row.present = !is_controller;
+            row.present = d.canopen && !is_controller;
             break;
         case MessageKind::sdo_request:
             row.message = sdo_request_to(device);
@@ -364,14 +377,14 @@ MessageRow service_row(const NetworkConfig& config, MessageKind kind, Device dev
             row.id = sdo_request_code + d.node_id;
             row.length_bytes = 8;
             row.from_controller = true;
-            row.present = !is_controller;
+            row.present = d.canopen && !is_controller;
             break;
         default:
             row.message = sdo_answer_of(device);
             row.name = name + "_sdo_answer";
             row.id = sdo_response_code + d.node_id;
             row.length_bytes = 8;
-            row.present = !is_controller;
+            row.present = d.canopen && !is_controller;
             break;
     }
     return row;
@@ -450,17 +463,19 @@ DeviceTable::DeviceTable(const NetworkConfig& config)
     : config_(checked(config)), messages_(message_rows(config)), signals_(signal_rows(config)) {
     by_id_.fill(Message::none);
     for (const auto& row : messages_) {
-        if (!row.present || row.extended) {
+        if (!row.present) {
             continue;
         }
-        auto& entry = by_id_[row.id];
-        if (entry != Message::none) {
+        const auto entry = message_with(row.id, row.extended);
+        if (entry != row.message && entry != Message::none) {
             std::ostringstream text;
             text << row.name << " and " << this->row(entry).name << " would both be identifier " << std::hex << "0x"
-                 << row.id << ": give one of their PDOs another number";
+                 << row.id << ": give one of them another number or node";
             throw std::invalid_argument(text.str());
         }
-        entry = row.message;
+        if (!row.extended) {
+            by_id_[row.id] = row.message;
+        }
     }
 }
 

@@ -75,7 +75,14 @@ void LoopbackBus::set_tap(Tap tap) {
     tap_ = std::move(tap);
 }
 
-void LoopbackBus::deliver(const CanFrame& frame, const Endpoint& sender) noexcept {
+void LoopbackBus::set_wire(Wire wire) {
+    wire_ = std::move(wire);
+}
+
+void LoopbackBus::deliver(CanFrame frame, const Endpoint& sender) noexcept {
+    if (wire_ && !wire_(frame)) {
+        return;
+    }
     if (tap_) {
         tap_(frame);
     }

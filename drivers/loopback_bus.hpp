@@ -15,6 +15,7 @@ namespace steadyboom::drivers {
 class LoopbackBus {
   public:
     using Tap = std::function<void(const CanFrame&)>;
+    using Wire = std::function<bool(CanFrame&)>;
 
     /// Throws std::invalid_argument for fewer than two endpoints or no capacity.
     explicit LoopbackBus(std::size_t endpoint_count = 2, std::size_t capacity_frames = 1024);
@@ -25,15 +26,20 @@ class LoopbackBus {
     /// Throws std::out_of_range. The endpoint lives as long as the bus.
     [[nodiscard]] CanBus& endpoint(std::size_t index);
 
-    /// Sees every frame once, as it is sent. The tap must neither throw nor, if the sender must not, allocate.
+    /// What happens to a frame on its way: it may be changed; false loses it. For fault injection; the same holds for
+    /// it as for the tap. An empty one carries every frame as it is.
+    void set_wire(Wire wire);
+
+    /// Sees every frame once, as it arrives. The tap must neither throw nor, if the sender must not, allocate.
     void set_tap(Tap tap);
 
   private:
     class Endpoint;
-    void deliver(const CanFrame& frame, const Endpoint& sender) noexcept;
+    void deliver(CanFrame frame, const Endpoint& sender) noexcept;
 
     std::vector<std::unique_ptr<Endpoint>> endpoints_;
     Tap tap_;
+    Wire wire_;
 };
 
 }  // namespace steadyboom::drivers

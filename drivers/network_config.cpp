@@ -111,6 +111,12 @@ bool measures(Unit unit, Signal signal) noexcept {
            (quantity == Quantity::opening && unit_rows[index_of(unit)].quantity == Quantity::length);
 }
 
+void NetworkConfig::protect_all(Protection protection) noexcept {
+    for (auto& device : devices) {
+        device.protection = protection;
+    }
+}
+
 std::array<DeviceConfig, device_count> NetworkConfig::default_devices() {
     constexpr std::array<std::uint8_t, device_count> node_ids = {0x01, 0x10, 0x14, 0x18, 0x19, 0x1C, 0x20, 0x28};
     // Object 1000h: the profile's number in the low word.
@@ -120,6 +126,7 @@ std::array<DeviceConfig, device_count> NetworkConfig::default_devices() {
         devices[i].node_id = node_ids[i];
         devices[i].device_type = device_types[i];
         devices[i].heartbeat_timeout_ms = 250;
+        devices[i].protection = Protection::e2e;
     }
     devices[index_of(Device::drum_encoder)].required = false;  // the observer does without it
     return devices;

@@ -32,7 +32,7 @@ enum class Pdo : std::uint8_t {
     safety_inputs,  ///< from the safety inputs
     safety_outputs,
     valve_command,
-    valve_twin,  ///< valve_command with every bit of its values inverted; there only if the valve is protected
+    valve_twin,  ///< valve_command with every bit of its data inverted; there only if the valve is protected
 };
 inline constexpr std::size_t pdo_count = 11;
 
@@ -102,6 +102,7 @@ enum class Unit : std::uint8_t {
 struct DeviceConfig {
     std::uint8_t node_id = 0;  ///< 1 to 127, all different
     Protection protection = Protection::none;
+    bool canopen = true;             ///< false: no NMT, SDO or heartbeat, nothing but its PDOs
     bool required = true;            ///< the crane is not ready before it is operational
     bool configure = true;           ///< the manager may write transmission, event timer and heartbeat time by SDO
     int heartbeat_ms = 100;          ///< producer time 1017h; 0: the device has none
@@ -113,8 +114,9 @@ struct DeviceConfig {
 
 struct PdoConfig {
     std::uint8_t number = 1;        ///< 1 to 4: TPDO1, RPDO1, ...; with the node id it makes the identifier
+    std::uint32_t extended_id = 0;  ///< 29-bit identifier instead; 0: none
     std::uint8_t length_bytes = 0;  ///< without the protection's two bytes; 0: where its signals end
-    std::uint16_t data_id = 0;      ///< what the CRC is taken over besides the frame; all different
+    std::uint16_t data_id = 0;      ///< what the CRC is taken over besides the frame; all different, unused by the twin
     Transmission transmission = Transmission::sync;  ///< of what a device sends
     int event_ms = 0;  ///< period of the event timer, at most one tick; 0 with Transmission::sync
 };
@@ -151,6 +153,9 @@ struct NetworkConfig {
     [[nodiscard]] const PdoConfig& operator[](Pdo pdo) const noexcept { return pdos[index_of(pdo)]; }
     [[nodiscard]] SignalConfig& operator[](Signal signal) noexcept { return signals[index_of(signal)]; }
     [[nodiscard]] const SignalConfig& operator[](Signal signal) const noexcept { return signals[index_of(signal)]; }
+
+    /// The same for all devices.
+    void protect_all(Protection protection) noexcept;
 
     [[nodiscard]] static std::array<DeviceConfig, device_count> default_devices();
     [[nodiscard]] static std::array<PdoConfig, pdo_count> default_pdos();

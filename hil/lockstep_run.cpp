@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "drivers/loopback_bus.hpp"
-
 namespace steadyboom::hil {
 
 namespace {
@@ -143,6 +141,12 @@ VirtualCrane& LockstepBench::crane() noexcept {
 }
 runtime::OperatorMailbox& LockstepBench::mailbox() noexcept {
     return parts_->mailbox;
+}
+drivers::LoopbackBus& LockstepBench::bus() noexcept {
+    return parts_->bus;
+}
+const runtime::ControlTick& LockstepBench::tick() const noexcept {
+    return parts_->tick;
 }
 const std::vector<RunTick>& LockstepBench::ticks() const noexcept {
     return parts_->result.ticks;

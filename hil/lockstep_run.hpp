@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "drivers/loopback_bus.hpp"
 #include "hil/run_result.hpp"
 #include "hil/virtual_crane.hpp"
 #include "runtime/control_tick.hpp"
@@ -35,6 +36,8 @@ class LockstepBench {
     /// For what a test does to the crane between two steps.
     [[nodiscard]] VirtualCrane& crane() noexcept;
     [[nodiscard]] runtime::OperatorMailbox& mailbox() noexcept;
+    [[nodiscard]] drivers::LoopbackBus& bus() noexcept;
+    [[nodiscard]] const runtime::ControlTick& tick() const noexcept;
 
     /// Ticks so far; figures and verdict as of now.
     [[nodiscard]] const std::vector<RunTick>& ticks() const noexcept;

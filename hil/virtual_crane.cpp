@@ -54,9 +54,11 @@ std::span<const drivers::CanFrame> VirtualCrane::frames_to_send(std::int64_t now
     };
     append(network_.housekeeping(now_ns));
     if (network_.sync_pending()) {
-        append(network_.answer_sync(
-            noisy_sensors(),
-            {.state = valve_.state(), .cutoff_open = valve_.cutoff_open(), .emergency_stop_healthy = true}, now_ns));
+        append(network_.answer_sync(noisy_sensors(),
+                                    {.status = valve_.status(state_[spool_index]),
+                                     .cutoff_open = valve_.cutoff_open(),
+                                     .emergency_stop_healthy = true},
+                                    now_ns));
     }
     return outbox_;
 }

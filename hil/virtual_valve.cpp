@@ -6,7 +6,6 @@
 
 namespace steadyboom::hil {
 
-using plant::ValveMode;
 using plant::ValveState;
 
 VirtualValve::VirtualValve(const plant::ActuatorParameters& actuator, double step_s)
@@ -17,27 +16,21 @@ VirtualValve::VirtualValve(const plant::ActuatorParameters& actuator, double ste
 
 void VirtualValve::obey(const drivers::ValveOrder& order, std::int64_t now_ns) noexcept {
     const bool heard = order.ever && now_ns - order.stamp_ns < command_timeout_ns;
-    if (!heard) {
-        if (order.ever && state_ != ValveState::fault_hold) {
-            state_ = ValveState::fault_hold;
-            ++timeouts_;
-        }
-    } else if (state_ != ValveState::fault_hold || order.mode == ValveMode::disabled) {
-        switch (order.mode) {
-            case ValveMode::disabled:
-                state_ = ValveState::disabled;
-                break;
-            case ValveMode::hold:
-                state_ = ValveState::hold;
-                break;
-            case ValveMode::active:
-                state_ = ValveState::active;
-                break;
-        }
-    }
-    commanded_m_ = state_ == ValveState::active ? std::clamp(order.set_point_m, -travel_m_, travel_m_) : 0.0;
+    const bool timed_out = order.ever && !heard;
+    timeouts_ += timed_out && !timed_out_ ? 1U : 0U;
+    timed_out_ = timed_out;
+    device_.step({.control_word_raw = order.control_word,
+                  .fault = timed_out ? drivers::ValveFault::holds : drivers::ValveFault::none});
+    commanded_m_ = state() == ValveState::active ? std::clamp(order.set_point_m, -travel_m_, travel_m_) : 0.0;
     const bool cutoff_heard = order.cutoff_ever && now_ns - order.cutoff_stamp_ns < command_timeout_ns;
-    cutoff_open_ = cutoff_heard && order.cutoff_energised && state_ != ValveState::fault_hold;
+    cutoff_open_ = cutoff_heard && order.cutoff_energised && !timed_out && !drivers::is_fault(state());
+}
+
+drivers::ValveStatus VirtualValve::status(double spool_m) const noexcept {
+    constexpr double deviation_share = 0.1;
+    return {.state = state(),
+            .limit_touched = std::abs(spool_m) >= travel_m_,
+            .control_deviation = std::abs(spool_m - commanded_m_) > deviation_share * travel_m_};
 }
 
 double VirtualValve::next_target_m() noexcept {

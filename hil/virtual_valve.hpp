@@ -11,10 +11,10 @@ namespace steadyboom::hil {
 
 /// A CiA 408 servo valve with its cut-off valve: what the spool is driven to, by orders and by their absence.
 ///
-/// Disabled and hold mean the closed centre; only an active valve follows its set-point. When no order came for
-/// command_timeout_ns (5 missed at 200 Hz) the valve centres itself, drops the cut-off and reports FAULT_HOLD until it
-/// is ordered disabled. The cut-off valve opens only while energised and a valve that is not in a fault allows it;
-/// closed, it locks the cylinder.
+/// All states but ACTIVE mean the closed centre; only an active valve follows its set-point. When no order came for
+/// command_timeout_ns (5 missed at 200 Hz) the valve centres itself, drops the cut-off and falls to FAULT_HOLD or
+/// FAULT_DISABLED until a reset edge lets it leave (drivers::Cia408Valve). The cut-off valve opens only while energised
+/// and a valve that is not in a fault allows it; closed, it locks the cylinder.
 class VirtualValve {
   public:
     static constexpr std::int64_t command_timeout_ns = 25'000'000;
@@ -35,7 +35,14 @@ class VirtualValve {
                2.0 * damping_ratio_ * omega_rad_s_ * spool_rate_m_s;
     }
 
-    [[nodiscard]] plant::ValveState state() const noexcept { return state_; }
+    [[nodiscard]] plant::ValveState state() const noexcept { return device_.state(); }
+    /// What it reports with its spool at `spool_m`: a control deviation beyond a tenth of the travel.
+    [[nodiscard]] drivers::ValveStatus status(double spool_m) const noexcept;
+    [[nodiscard]] bool timed_out() const noexcept { return timed_out_; }
+
+    /// Power off and on.
+    void restart() noexcept { device_.restart(); }
+
     [[nodiscard]] bool cutoff_open() const noexcept { return cutoff_open_; }
     [[nodiscard]] std::uint64_t timeouts() const noexcept { return timeouts_; }
 
@@ -46,7 +53,8 @@ class VirtualValve {
     std::vector<double> delayed_m_;  ///< commanded openings still under way, a ring
     std::size_t next_ = 0;
     double commanded_m_ = 0.0;
-    plant::ValveState state_ = plant::ValveState::disabled;
+    drivers::Cia408Valve device_;
+    bool timed_out_ = false;
     bool cutoff_open_ = false;
     std::uint64_t timeouts_ = 0;
 };

@@ -32,6 +32,7 @@ struct Permission {
     ValveMode mode = ValveMode::disabled;
     bool cutoff_energised = false;  ///< true opens the cut-off valve
     double authority = 0.0;         ///< 0 (neutral) to 1 (full), ramps up after engaging
+    bool valve_reset = false;       ///< with `disabled`: the valve may be asked to leave a fault state
     std::uint32_t reasons = 0;      ///< InterlockReason bits (controllers/interlock.hpp)
 
     [[nodiscard]] bool motion() const noexcept { return mode == ValveMode::active && authority > 0.0; }

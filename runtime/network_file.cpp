@@ -54,6 +54,7 @@ void declare_device(TomlSchema& schema, Device device, DeviceConfig& config) {
         return;
     }
     schema.word<Protection>("protection", config.protection, protection_words);
+    schema.boolean("canopen", config.canopen);
     schema.boolean("required", config.required);
     schema.boolean("configure", config.configure);
     schema.integer("heartbeat_ms", config.heartbeat_ms, 0, 65'535, "ms");
@@ -66,8 +67,9 @@ void declare_device(TomlSchema& schema, Device device, DeviceConfig& config) {
 void declare_pdo(TomlSchema& schema, Pdo pdo, PdoConfig& config) {
     schema.optional_section("pdo." + std::string(drivers::name_of(pdo)));
     schema.integer("number", config.number, 1, 4);
-    schema.integer("data_id", config.data_id, 0, 0xFFFF);
-    if (pdo != Pdo::valve_twin) {  // as long as the command that it repeats
+    schema.integer("extended_id", config.extended_id, 0, 0x1FFF'FFFF);
+    if (pdo != Pdo::valve_twin) {  // it repeats the command, bit for bit
+        schema.integer("data_id", config.data_id, 0, 0xFFFF);
         schema.integer("length_bytes", config.length_bytes, 0, 8);
     }
     if (!drivers::from_controller(pdo)) {

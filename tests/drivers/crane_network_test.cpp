@@ -13,6 +13,12 @@
 namespace steadyboom::drivers {
 namespace {
 
+NetworkConfig without_protection() {
+    NetworkConfig config;
+    config.protect_all(Protection::none);
+    return config;
+}
+
 static_assert(std::is_trivially_copyable_v<NetworkStatus>);
 
 constexpr std::int64_t tick_ns = 5'000'000;
@@ -43,6 +49,21 @@ class CraneNetworkTest : public ::testing::Test {
         return frame;
     }
 
+    /// The valve says that it is in this state.
+    void valve_reports(plant::ValveState state) {
+        auto frame = network_.table().blank(message_of(Pdo::valve_status), 0);
+        write_raw(network_.table().row(Signal::valve_status_word), static_cast<std::int64_t>(state), frame);
+        (void)decode({frame});
+    }
+
+    /// Until the valve, which follows, is in command.
+    void activate(CommandGuard& guard) {
+        for (const auto state : {plant::ValveState::disabled, plant::ValveState::hold, plant::ValveState::active}) {
+            valve_reports(state);
+            (void)encode(guard.pass({0.0}, {.mode = plant::ValveMode::active, .authority = 1.0}));
+        }
+    }
+
     /// Encodes until the controller's own boot-up and the start of all nodes are out.
     void settle() {
         (void)encode(guard_.neutral());
@@ -50,7 +71,7 @@ class CraneNetworkTest : public ::testing::Test {
     }
 
     std::int64_t now_ns_ = 1'000'000'000;
-    CraneNetwork network_{NetworkConfig{}};
+    CraneNetwork network_{without_protection()};
     CommandGuard guard_{{.max_opening_m = 7.6e-3, .max_step_m = 7.6e-3}};
 };
 
@@ -138,15 +159,42 @@ TEST_F(CraneNetworkTest, NewestOfSeveralSamplesWinsAndTheOthersAreCounted) {
     EXPECT_EQ(network_.status().superseded_frames, 2U);
 }
 
-TEST_F(CraneNetworkTest, SampleOutOfRangeKeepsTheLastGoodValueAndIsNotValid) {
+TEST_F(CraneNetworkTest, TwoSamplesOutOfRangeAreHeldAndTheThirdMakesTheChannelInvalid) {
     (void)decode({with_value(Signal::boom_angle, 1.0)});
-    const auto measured = decode({with_value(Signal::boom_angle, 2.5)});
-    EXPECT_FALSE(measured.valid[plant::boom_angle_rad]);
-    EXPECT_FALSE(measured.fresh(plant::boom_angle_rad));
-    EXPECT_NEAR(measured.value[plant::boom_angle_rad], 1.0, 2e-5);
-    EXPECT_EQ(network_.status().out_of_range_values, 1U);
+    for (std::uint32_t bad = 1; bad <= 3; ++bad) {
+        const auto measured = decode({with_value(Signal::boom_angle, 2.5)});
+        EXPECT_EQ(measured.valid[plant::boom_angle_rad], bad <= 2) << bad;
+        EXPECT_FALSE(measured.fresh(plant::boom_angle_rad));
+        EXPECT_EQ(measured.age_ticks[plant::boom_angle_rad], bad <= 2 ? bad : 0U);
+        EXPECT_NEAR(measured.value[plant::boom_angle_rad], 1.0, 2e-5);
+        EXPECT_EQ(network_.status().out_of_range_values, bad);
+    }
     EXPECT_FALSE(decode({}).valid[plant::boom_angle_rad]) << "silence after a bad sample does not make it good";
+    for (int good = 1; good <= 10; ++good) {
+        EXPECT_EQ(decode({with_value(Signal::boom_angle, 1.0)}).fresh(plant::boom_angle_rad), good == 10) << good;
+    }
+}
+
+TEST_F(CraneNetworkTest, JumpThatPhysicsForbidsIsHeldTwiceAndThenTheChannelIsInvalid) {
+    const double step_rad = network_.table().row(Signal::boom_angle).largest_step_unit;
+    ASSERT_GT(step_rad, 0.0);
     EXPECT_TRUE(decode({with_value(Signal::boom_angle, 1.0)}).fresh(plant::boom_angle_rad));
+    EXPECT_TRUE(decode({with_value(Signal::boom_angle, 1.0 + 0.99 * step_rad)}).fresh(plant::boom_angle_rad));
+    // The allowance grows with the silence before.
+    (void)decode({});
+    EXPECT_TRUE(decode({with_value(Signal::boom_angle, 1.0 + 2.98 * step_rad)}).fresh(plant::boom_angle_rad));
+    const double level_rad = 1.0 + 2.98 * step_rad;
+    for (int bad = 1; bad <= 3; ++bad) {
+        const auto measured = decode({with_value(Signal::boom_angle, level_rad + 5.0 * step_rad)});
+        EXPECT_EQ(measured.valid[plant::boom_angle_rad], bad <= 2);
+        EXPECT_NEAR(measured.value[plant::boom_angle_rad], level_rad, 2e-5);
+    }
+    EXPECT_EQ(network_.status().implausible_values, 3U);
+    for (int settled = 1; settled <= 10; ++settled) {
+        EXPECT_EQ(decode({with_value(Signal::boom_angle, level_rad + 5.0 * step_rad)}).fresh(plant::boom_angle_rad),
+                  settled == 10)
+            << "a new level is one if it stays";
+    }
 }
 
 TEST_F(CraneNetworkTest, StatusByteOfTheDeviceDecidesValidityOfItsOwnChannelOnly) {
@@ -196,6 +244,7 @@ TEST_F(CraneNetworkTest, SafetyInputsAreUnhealthyUntilHeardAndAge) {
 
 TEST_F(CraneNetworkTest, CommandLeavesAsCutOffThenValveThenSync) {
     settle();
+    activate(guard_);
     const plant::Permission engaged{.mode = plant::ValveMode::active, .cutoff_energised = true, .authority = 1.0};
     const auto frames = encode(guard_.pass({3.8e-3}, engaged));
     ASSERT_EQ(frames.size(), 3U);
@@ -204,24 +253,54 @@ TEST_F(CraneNetworkTest, CommandLeavesAsCutOffThenValveThenSync) {
     EXPECT_EQ(frames[0].data[0], 1);
     EXPECT_EQ(frames[1].id, 0x220U);
     EXPECT_EQ(frames[1].length, 4);
-    EXPECT_EQ(frames[1].data, (std::array<std::uint8_t, 8>{0x0F, 0, 0x00, 0x20}));
+    EXPECT_EQ(frames[1].data, (std::array<std::uint8_t, 8>{0x07, 0, 0x00, 0x20}));
     EXPECT_EQ(frames[2].id, 0x080U);
     EXPECT_EQ(frames[2].length, 1);
     const auto negative = encode(guard_.pass({-3.8e-3}, engaged));
-    EXPECT_EQ(negative[1].data, (std::array<std::uint8_t, 8>{0x0F, 0, 0x00, 0xE0}));
+    EXPECT_EQ(negative[1].data, (std::array<std::uint8_t, 8>{0x07, 0, 0x00, 0xE0}));
     const auto hold = encode(guard_.pass({0.0}, {.mode = plant::ValveMode::hold, .cutoff_energised = true}));
-    EXPECT_EQ(hold[1].data, (std::array<std::uint8_t, 8>{0x0B, 0, 0, 0}));
+    EXPECT_EQ(hold[1].data, (std::array<std::uint8_t, 8>{0x03, 0, 0, 0}));
     const auto refused = encode(guard_.pass({std::nan("")}, engaged));
     EXPECT_EQ(refused[0].data[0], 0);
-    EXPECT_EQ(refused[1].data, (std::array<std::uint8_t, 8>{0x09, 0, 0, 0}));
+    EXPECT_EQ(refused[1].data, (std::array<std::uint8_t, 8>{0x01, 0, 0, 0}));
 }
 
 TEST_F(CraneNetworkTest, SetPointNeverLeavesTheValvesFullScale) {
     CommandGuard generous({.max_opening_m = 1.0, .max_step_m = 1.0});
     const plant::Permission engaged{.mode = plant::ValveMode::active, .authority = 1.0};
     settle();
-    EXPECT_EQ(encode(generous.pass({0.5}, engaged))[1].data, (std::array<std::uint8_t, 8>{0x0F, 0, 0x00, 0x40}));
-    EXPECT_EQ(encode(generous.pass({-0.5}, engaged))[1].data, (std::array<std::uint8_t, 8>{0x0F, 0, 0x00, 0xC0}));
+    activate(generous);
+    EXPECT_EQ(encode(generous.pass({0.5}, engaged))[1].data, (std::array<std::uint8_t, 8>{0x07, 0, 0x00, 0x40}));
+    EXPECT_EQ(encode(generous.pass({-0.5}, engaged))[1].data, (std::array<std::uint8_t, 8>{0x07, 0, 0x00, 0xC0}));
+}
+
+TEST_F(CraneNetworkTest, OpeningIsSentToNoValveThatIsNotAskedToBeActive) {
+    settle();
+    const plant::Permission engaged{.mode = plant::ValveMode::active, .authority = 1.0};
+    valve_reports(plant::ValveState::disabled);
+    const auto raising = encode(guard_.pass({3.8e-3}, engaged));
+    EXPECT_EQ(raising[1].data, (std::array<std::uint8_t, 8>{0x03, 0, 0, 0}));
+    activate(guard_);
+    for (int tick = 0; tick < 10; ++tick) {
+        valve_reports(plant::ValveState::fault_hold);
+        (void)encode(guard_.pass({3.8e-3}, engaged));
+    }
+    EXPECT_EQ(encode(guard_.pass({3.8e-3}, engaged))[1].data, (std::array<std::uint8_t, 8>{0x01, 0, 0, 0}));
+}
+
+TEST_F(CraneNetworkTest, ValveIsAskedToLeaveAFaultOnlyByADisabledCommandThatLetsIt) {
+    settle();
+    const auto reset_bit_came = [&](const plant::Permission& permit) {
+        bool came = false;
+        for (int tick = 0; tick < 10; ++tick) {
+            valve_reports(plant::ValveState::fault_disabled);
+            came |= (encode(guard_.pass({0.0}, permit))[1].data[0] & 0x08) != 0;
+        }
+        return came;
+    };
+    EXPECT_FALSE(reset_bit_came({.mode = plant::ValveMode::disabled}));
+    EXPECT_FALSE(reset_bit_came({.mode = plant::ValveMode::hold, .valve_reset = true}));
+    EXPECT_TRUE(reset_bit_came({.mode = plant::ValveMode::disabled, .valve_reset = true}));
 }
 
 TEST_F(CraneNetworkTest, SyncComesLastAndCountsFromOneToTwoHundredAndFortyAndOn) {

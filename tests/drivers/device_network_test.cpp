@@ -10,6 +10,12 @@
 namespace steadyboom::drivers {
 namespace {
 
+NetworkConfig without_protection() {
+    NetworkConfig config;
+    config.protect_all(Protection::none);
+    return config;
+}
+
 class DeviceNetworkTest : public ::testing::Test {
   protected:
     void receive(const std::vector<CanFrame>& frames) { network_.receive(frames, now_ns_); }
@@ -47,7 +53,7 @@ class DeviceNetworkTest : public ::testing::Test {
 
     const std::set<std::uint32_t> all_answers_ = {0x190, 0x194, 0x198, 0x199, 0x19C, 0x1A0, 0x2A0, 0x1A8};
     std::int64_t now_ns_ = 0;
-    DeviceNetwork network_{NetworkConfig{}};
+    DeviceNetwork network_{without_protection()};
 };
 
 TEST_F(DeviceNetworkTest, NodesAnnounceThemselvesAndWaitToBeStarted) {
@@ -131,7 +137,7 @@ TEST_F(DeviceNetworkTest, OrdersAreTakenOnlyWhileOperationalAndOfExactLength) {
     const auto& order = network_.valve_order();
     EXPECT_TRUE(order.ever);
     EXPECT_EQ(order.stamp_ns, 77);
-    EXPECT_EQ(order.mode, plant::ValveMode::active);
+    EXPECT_EQ(order.control_word, 0x0F);
     EXPECT_NEAR(order.set_point_m, 3.8e-3, 1e-12);
     EXPECT_TRUE(order.cutoff_energised);
     EXPECT_EQ(order.cutoff_stamp_ns, 77);
@@ -153,17 +159,12 @@ TEST_F(DeviceNetworkTest, AnswersNothingButOrdersOfTheController) {
     EXPECT_EQ(network_.filters().size(), 11U);
 }
 
-TEST_F(DeviceNetworkTest, SetPointBeyondFullScaleIsCutAndUnknownModeIsDisabled) {
+TEST_F(DeviceNetworkTest, SetPointBeyondFullScaleIsCut) {
     boot_and_start();
     receive({valve(0x0F, 32767)});
     EXPECT_NEAR(network_.valve_order().set_point_m, 7.6e-3, 1e-15);
     receive({valve(0x0F, -32768)});
     EXPECT_NEAR(network_.valve_order().set_point_m, -7.6e-3, 1e-15);
-    receive({valve(0x0B, 0)});
-    EXPECT_EQ(network_.valve_order().mode, plant::ValveMode::hold);
-    receive({valve(0x0D, 0)});
-    EXPECT_EQ(network_.valve_order().mode, plant::ValveMode::disabled);
-    EXPECT_EQ(network_.status().unknown_orders, 1U);
 }
 
 TEST_F(DeviceNetworkTest, StoppedValveForgetsItsOrder) {
@@ -171,7 +172,7 @@ TEST_F(DeviceNetworkTest, StoppedValveForgetsItsOrder) {
     receive({valve(0x0F, 8192), cutoff(1)});
     receive({nmt(0x02, 0x20), nmt(0x81, 0x28)});
     EXPECT_FALSE(network_.valve_order().ever);
-    EXPECT_EQ(network_.valve_order().mode, plant::ValveMode::disabled);
+    EXPECT_EQ(network_.valve_order().control_word, 0);
     EXPECT_EQ(network_.valve_order().set_point_m, 0.0);
     EXPECT_FALSE(network_.valve_order().cutoff_energised);
 }

@@ -39,9 +39,7 @@ TEST(DeviceTable, EverySensorChannelHasExactlyOneSignal) {
 TEST(DeviceTable, SignalsLieInTheirMessagesAndLeaveRoomForProtection) {
     for (const auto protection : {Protection::none, Protection::e2e}) {
         NetworkConfig config;
-        for (auto& device : config.devices) {
-            device.protection = protection;
-        }
+        config.protect_all(protection);
         const DeviceTable table(config);
         const std::size_t ends_bytes = protection == Protection::e2e ? protection_bytes : 0;
         for (const auto& message : table.messages()) {
@@ -67,7 +65,7 @@ TEST(DeviceTable, SignalsLieInTheirMessagesAndLeaveRoomForProtection) {
 TEST(DeviceTable, ADeviceIsDescribedByItsRows) {
     NetworkConfig config;
     config[Pdo::boom_angle] = {
-        .number = 2, .length_bytes = 7, .data_id = 9, .transmission = Transmission::event, .event_ms = 4};
+        .number = 2, .length_bytes = 6, .data_id = 9, .transmission = Transmission::event, .event_ms = 4};
     config[Signal::boom_angle] = {.object = 0x6010,
                                   .type = RawType::i16,
                                   .byte_offset = 2,
@@ -82,7 +80,7 @@ TEST(DeviceTable, ADeviceIsDescribedByItsRows) {
     const auto& message = table.row(Pdo::boom_angle);
     EXPECT_EQ(message.name, "boom_inclinometer_tpdo2");
     EXPECT_EQ(message.id, 0x294U);
-    EXPECT_EQ(message.length_bytes, 7);
+    EXPECT_EQ(message.length_bytes, 8);
     EXPECT_EQ(message.cycle, Cycle::timer);
     EXPECT_EQ(message.interval_ns, 4'000'000);
     const auto& row = table.row(Signal::boom_angle);
@@ -207,9 +205,7 @@ TEST(BusLoad, FrameLengthsAreTheKnownOnes) {
 
 BusLoad load_of(Protection protection, std::int64_t period_ns = 5'000'000, std::uint32_t bit_rate_bit_s = 500'000) {
     NetworkConfig config{.period_ns = period_ns, .bit_rate_bit_s = bit_rate_bit_s};
-    for (auto& device : config.devices) {
-        device.protection = protection;
-    }
+    config.protect_all(protection);
     return bus_load(DeviceTable(config));
 }
 

@@ -75,5 +75,22 @@ TEST(LoopbackBus, BusOfOneOrWithoutRoomIsRejected) {
     EXPECT_THROW((void)bus.endpoint(2), std::out_of_range);
 }
 
+TEST(LoopbackBus, WireMayChangeAndLoseFrames) {
+    LoopbackBus bus;
+    int tapped = 0;
+    bus.set_tap([&](const CanFrame&) { ++tapped; });
+    bus.set_wire([](CanFrame& frame) {
+        frame.data[0] = 7;
+        return frame.id != 2;
+    });
+    const std::array frames = {CanFrame{.id = 1, .length = 1}, CanFrame{.id = 2, .length = 1}};
+    EXPECT_EQ(bus.endpoint(0).send(frames).sent, 2U);
+    std::array<CanFrame, 4> arrived;
+    ASSERT_EQ(bus.endpoint(1).receive(arrived), 1U);
+    EXPECT_EQ(arrived[0].id, 1U);
+    EXPECT_EQ(arrived[0].data[0], 7);
+    EXPECT_EQ(tapped, 1);
+}
+
 }  // namespace
 }  // namespace steadyboom::drivers

@@ -1,66 +1,10 @@
-#include <array>
 #include <cmath>
 #include <optional>
 
-#include <gtest/gtest.h>
-
-#include "drivers/crane_network.hpp"
-#include "drivers/device_network.hpp"
-#include "drivers/loopback_bus.hpp"
-#include "runtime/realtime_section.hpp"
+#include "network_loop.hpp"
 
 namespace steadyboom::drivers {
 namespace {
-
-constexpr std::int64_t tick_ns = 5'000'000;
-constexpr plant::Permission engaged{.mode = plant::ValveMode::active, .cutoff_energised = true, .authority = 1.0};
-
-/// Controller and crane on one loopback bus; each tick runs the controller, then the crane, inside a RealtimeSection.
-class NetworkLoop : public ::testing::Test {
-  protected:
-    plant::CraneMeasurement tick(double opening_m = 0.0, const plant::Permission& permit = engaged) {
-        const runtime::RealtimeSection no_allocation;
-        now_ns_ += tick_ns;
-        auto& controller_bus = bus_.endpoint(0);
-        auto& crane_bus = bus_.endpoint(1);
-
-        auto count = controller_bus.receive(frames_);
-        const auto measured = controller_.decode({frames_.data(), count}, now_ns_);
-        (void)controller_bus.send(controller_.encode(guard_.pass({opening_m}, permit), now_ns_));
-
-        count = crane_bus.receive(frames_);
-        devices_.receive({frames_.data(), count}, now_ns_);
-        (void)crane_bus.send(devices_.housekeeping(now_ns_));
-        if (devices_.sync_pending()) {
-            (void)crane_bus.send(devices_.answer_sync(sensors_, feedback_, now_ns_));
-        }
-        return measured;
-    }
-
-    void start() {
-        for (int i = 0; i < 10; ++i) {
-            (void)tick();
-        }
-    }
-
-    [[nodiscard]] static plant::SensorVector plausible(double share) {
-        plant::SensorVector sensors;
-        sensors << 300.0 * share, -120.0 * share, 1.0 + 0.1 * share, 133.4e3 * (1.0 + share), 0.05 * share,
-            12.2 + share, -0.01 * share, 3.0e-3 * share, 6.8e6 * (1.0 + 0.5 * share);
-        return sensors;
-    }
-
-    std::int64_t now_ns_ = 0;
-    LoopbackBus bus_;
-    CraneNetwork controller_{NetworkConfig{}};
-    DeviceNetwork devices_{NetworkConfig{}};
-    CommandGuard guard_{{.max_opening_m = 7.6e-3, .max_step_m = 7.6e-3}};
-    plant::SensorVector sensors_ = plausible(0.0);
-    plant::SensorVector resolution_ =
-        (plant::SensorVector() << 0.1, 0.1, 1.75e-5, 1.0, 1.75e-5, 1.0e-4, 1.0e-6, 4.64e-7, 1.0e4).finished();
-    ValveFeedback feedback_;
-    std::array<CanFrame, 64> frames_;
-};
 
 TEST_F(NetworkLoop, NodesAreOperationalWithinTheFirstTicks) {
     start();
@@ -106,11 +50,11 @@ TEST_F(NetworkLoop, OrderReachesTheValveInTheSameTickWithinHalfAStep) {
         (void)tick(opening_m);
         ASSERT_NEAR(devices_.valve_order().set_point_m, opening_m, 0.5 * 7.6e-3 / 16384.0 + 1.0e-9);
         ASSERT_EQ(devices_.valve_order().stamp_ns, now_ns_);
-        ASSERT_EQ(devices_.valve_order().mode, plant::ValveMode::active);
+        ASSERT_EQ(devices_.valve_order().control_word, 0b0111);
         ASSERT_TRUE(devices_.valve_order().cutoff_energised);
     }
     (void)tick(0.0, {.mode = plant::ValveMode::hold});
-    EXPECT_EQ(devices_.valve_order().mode, plant::ValveMode::hold);
+    EXPECT_EQ(devices_.valve_order().control_word, 0b0011);
     EXPECT_FALSE(devices_.valve_order().cutoff_energised);
 }
 
@@ -119,13 +63,15 @@ TEST_F(NetworkLoop, RefusedCommandReachesTheValveAsDisabledInTheSameTick) {
     (void)tick(2.0e-3);
     (void)tick(std::nan(""));
     EXPECT_EQ(devices_.valve_order().set_point_m, 0.0);
-    EXPECT_EQ(devices_.valve_order().mode, plant::ValveMode::disabled);
+    EXPECT_EQ(devices_.valve_order().control_word, 0b0001);
     EXPECT_FALSE(devices_.valve_order().cutoff_energised);
 }
 
 TEST_F(NetworkLoop, ValveStateAndSafetyInputsCrossTheBus) {
     start();
-    feedback_ = {.state = plant::ValveState::fault_hold, .cutoff_open = true, .emergency_stop_healthy = false};
+    valve_follows_ = false;
+    feedback_ = {
+        .status = {.state = plant::ValveState::fault_hold}, .cutoff_open = true, .emergency_stop_healthy = false};
     (void)tick();
     const auto measured = tick();
     EXPECT_EQ(measured.valve_state, plant::ValveState::fault_hold);
@@ -134,22 +80,29 @@ TEST_F(NetworkLoop, ValveStateAndSafetyInputsCrossTheBus) {
     EXPECT_EQ(measured.safety_inputs_age_ticks, 0U);
 }
 
-TEST_F(NetworkLoop, RestartedNodeIsStartedAgainWithinThreeTicks) {
+TEST_F(NetworkLoop, RestartedNodeIsStartedAgainAndBelievedAfterTenGoodTicks) {
     start();
     devices_.restart(Device::boom_inclinometer);
-    (void)tick();  // boot-up leaves
-    (void)tick();  // the controller hears it and answers with NMT start
-    EXPECT_EQ(devices_.state(Device::boom_inclinometer), NodeState::operational);
-    EXPECT_TRUE(tick().fresh(plant::boom_angle_rad));
+    int ticks_until_operational = 0;
+    while (devices_.state(Device::boom_inclinometer) != NodeState::operational && ticks_until_operational < 30) {
+        (void)tick();
+        ++ticks_until_operational;
+    }
+    EXPECT_LT(ticks_until_operational, 30);
+    int ticks_until_believed = 0;
+    while (!tick().fresh(plant::boom_angle_rad) && ticks_until_believed < 30) {
+        ++ticks_until_believed;
+    }
+    EXPECT_LE(ticks_until_believed, 13);
     EXPECT_EQ(controller_.status().nodes[index_of(Device::boom_inclinometer)].boot_ups, 2U);
 }
 
-TEST_F(NetworkLoop, AllNodesRestartedAtOnceAreBackWithinTenTicks) {
+TEST_F(NetworkLoop, AllNodesRestartedAtOnceAreBackWithinASecond) {
     start();
     for (std::size_t i = 1; i < device_count; ++i) {
         devices_.restart(static_cast<Device>(i));
     }
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 200; ++i) {
         (void)tick();
     }
     const auto measured = tick();
@@ -171,7 +124,9 @@ TEST_F(NetworkLoop, SilentNodeAgesAndIsMissedAfterTheConsumerTime) {
     EXPECT_FALSE(controller_.status().nodes[index_of(Device::load_pin)].alive);
     EXPECT_TRUE(controller_.status().nodes[index_of(Device::servo_valve)].alive);
     devices_.set_silent(Device::load_pin, false);
-    (void)tick();
+    for (int i = 0; i < 100; ++i) {
+        (void)tick();
+    }
     EXPECT_TRUE(tick().fresh(plant::line_tension_N));
 }
 
@@ -180,7 +135,9 @@ TEST_F(NetworkLoop, OverflowOfASensorArrivesAsInvalid) {
     sensors_[plant::strain_lower_microstrain] = 1.0e6;
     sensors_[plant::boom_angle_rad] = 100.0;
     sensors_[plant::line_angle_rad] = std::nan("");
-    (void)tick();
+    for (int i = 0; i < 3; ++i) {
+        (void)tick();
+    }
     const auto measured = tick();
     EXPECT_FALSE(measured.valid[plant::strain_lower_microstrain]);
     EXPECT_FALSE(measured.valid[plant::boom_angle_rad]);

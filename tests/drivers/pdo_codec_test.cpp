@@ -10,8 +10,14 @@
 namespace steadyboom::drivers {
 namespace {
 
+NetworkConfig without_protection() {
+    NetworkConfig config;
+    config.protect_all(Protection::none);
+    return config;
+}
+
 const DeviceTable& table() {
-    static const DeviceTable instance{NetworkConfig{}};
+    static const DeviceTable instance{without_protection()};
     return instance;
 }
 

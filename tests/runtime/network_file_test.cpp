@@ -69,7 +69,7 @@ TEST(NetworkFile, WhatIsWrittenReadsBackTheSame) {
                                          .vendor_id = 0xFFFF'FFFF,
                                          .product_code = 7};
     config[drivers::Pdo::drum] = {
-        .number = 3, .length_bytes = 5, .data_id = 0xFFFF, .transmission = drivers::Transmission::event, .event_ms = 2};
+        .number = 3, .length_bytes = 5, .data_id = 0xFFFF, .transmission = drivers::Transmission::event, .event_ms = 5};
     config[drivers::Signal::line_angle].byte_order = drivers::ByteOrder::big_endian;
     config[drivers::Signal::line_angle].scale = -0.1 / 3.0;
     config[drivers::Signal::line_length].unit = drivers::Unit::mm;

@@ -56,9 +56,9 @@ class CraneOnTheBus {
         now_ns += period_ns;
     }
 
-    /// Until every device is operational and heard.
+    /// Until every device is operational, heard and believed.
     void start() {
-        for (int i = 0; i < 10; ++i) {
+        for (int i = 0; i < 200; ++i) {
             (void)tick();
         }
     }
