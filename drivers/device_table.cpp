@@ -340,7 +340,8 @@ MessageRow pdo_row(const NetworkConfig& config, Pdo pdo) {
     row.from_controller = out;
     row.cycle = out ? Cycle::every_tick : p.transmission == Transmission::sync ? Cycle::on_sync : Cycle::timer;
     row.interval_ns = row.cycle == Cycle::timer ? p.event_ms * ns_per_ms : 0;
-    row.protection = config[device].protection;
+    // The twin's counter and CRC are the command's, inverted.
+    row.protection = pdo == Pdo::valve_twin ? Protection::none : config[device].protection;
     row.data_id = p.data_id;
     return row;
 }

@@ -70,10 +70,10 @@ BusIsSetUpByNetworkdWithAShortSendQueue() {
         -U "$repository/systemd/80-can.link" bash -c '
         ip link add can0 type vcan
         for try in {1..50}; do
-            ip link show can0 | grep -qw "qlen 4" && networkctl status can0 | grep -q "Network File: .*/80-can.network" && break
+            ip link show can0 | grep -qw "qlen 5" && networkctl status can0 | grep -q "Network File: .*/80-can.network" && break
             sleep 0.2
         done
-        ip link show can0 | grep -qw "qlen 4" || { echo "queue length:"; ip link show can0; exit 1; }
+        ip link show can0 | grep -qw "qlen 5" || { echo "queue length:"; ip link show can0; exit 1; }
         networkctl status can0 | grep -q "Network File: .*/80-can.network" || { networkctl status can0; exit 2; }
         journalctl --boot | grep -E "80-can\.(network|link):" && exit 3
         exit 0' || refute "status $?"
