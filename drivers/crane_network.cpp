@@ -11,9 +11,6 @@
 namespace steadyboom::drivers {
 namespace {
 
-constexpr std::uint8_t all_nodes = 0;
-constexpr std::int64_t ns_per_ms = 1'000'000;
-
 std::unique_ptr<DeviceTable> checked(std::unique_ptr<DeviceTable> table) {
     const double load_share = bus_load(*table).worst_case_share;
     if (load_share > largest_bus_load_share) {
@@ -28,7 +25,9 @@ std::unique_ptr<DeviceTable> checked(std::unique_ptr<DeviceTable> table) {
 }  // namespace
 
 CraneNetwork::CraneNetwork(const NetworkConfig& config)
-    : table_(checked(std::make_unique<DeviceTable>(config))), valve_(make_valve_driver(*table_)) {
+    : table_(checked(std::make_unique<DeviceTable>(config))),
+      manager_(std::make_unique<NetworkManager>(*table_)),
+      valve_(make_valve_driver(*table_)) {
     for (const auto& row : table_->messages()) {
         if (row.kind == MessageKind::pdo && !row.from_controller && row.protection == Protection::e2e) {
             inputs_[index_of(row.pdo)].receiver.emplace(row.data_id);
@@ -40,7 +39,7 @@ std::vector<CanFilter> CraneNetwork::filters() const {
     std::vector<CanFilter> filters;
     for (const auto& row : table_->messages()) {
         if (row.present && !row.from_controller) {
-            filters.push_back({row.id});
+            filters.push_back({.id = row.id, .extended = row.extended});
         }
     }
     return filters;
@@ -60,22 +59,26 @@ plant::CraneMeasurement CraneNetwork::decode(std::span<const CanFrame> frames, s
             continue;
         }
         const auto& row = table_->row(message);
-        if (row.kind == MessageKind::heartbeat) {
-            decode_heartbeat(row.device, frame.data[0], now_ns);
-        } else if (row.kind == MessageKind::pdo) {
-            take_pdo(row, frame);
+        switch (row.kind) {
+            case MessageKind::heartbeat:
+                decode_heartbeat(row.device, frame.data[0], now_ns);
+                break;
+            case MessageKind::emergency:
+                manager_->take_emergency(row.device, frame);
+                break;
+            case MessageKind::sdo_answer:
+                manager_->take_sdo_answer(frame);
+                break;
+            case MessageKind::pdo:
+                take_pdo(row, frame);
+                break;
+            default:
+                break;
         }
     }
+    manager_->update(now_ns);
     for (std::size_t i = 0; i < pdo_count; ++i) {
         close_pdo(table_->row(static_cast<Pdo>(i)));
-    }
-    for (std::size_t i = 0; i < device_count; ++i) {
-        auto& node = status_.nodes[i];
-        if (node.state != NodeState::unknown) {
-            node.heartbeat_age_ns = now_ns - heartbeat_stamp_ns_[i];
-            const auto& device = table_->config(static_cast<Device>(i));
-            node.alive = device.heartbeat_ms == 0 || node.heartbeat_age_ns <= device.heartbeat_timeout_ms * ns_per_ms;
-        }
     }
     measurement_.valve_state = valve_->status().state;
     measurement_.stamp_ns = sync_stamp_ns_;
@@ -107,28 +110,27 @@ Message CraneNetwork::accepted_message(const CanFrame& frame) noexcept {
 
 void CraneNetwork::decode_heartbeat(Device device, std::uint8_t state_raw, std::int64_t now_ns) noexcept {
     const auto state = static_cast<NodeState>(state_raw);
-    auto& node = status_.nodes[index_of(device)];
     switch (state) {
         case NodeState::boot_up:
-            ++node.boot_ups;
-            needs_start_[index_of(device)] = true;
-            break;
-        case NodeState::pre_operational:
-            needs_start_[index_of(device)] = true;
-            break;
         case NodeState::stopped:
         case NodeState::operational:
-            needs_start_[index_of(device)] = false;
+        case NodeState::pre_operational:
+            manager_->take_heartbeat(device, state, now_ns);
+            if (device == Device::servo_valve && state == NodeState::boot_up) {
+                valve_->restarted();
+            }
             break;
         default:
             ++status_.out_of_range_values;
-            return;
     }
-    node.state = state;
-    heartbeat_stamp_ns_[index_of(device)] = now_ns;
 }
 
 void CraneNetwork::take_pdo(const MessageRow& row, const CanFrame& frame) noexcept {
+    manager_->take_process_data(row.device);
+    if (!manager_->operational(row.device)) {
+        ++status_.not_operational_frames;
+        return;
+    }
     auto& input = inputs_[index_of(row.pdo)];
     const auto verdict = input.receiver ? input.receiver->check(frame) : FrameVerdict::good;
     if (verdict != FrameVerdict::good && verdict != FrameVerdict::poor_quality) {
@@ -227,7 +229,9 @@ void CraneNetwork::decode_sensor(const SignalRow& row, const CanFrame& frame, bo
 
 std::span<const CanFrame> CraneNetwork::encode(const GuardedCommand& command, std::int64_t now_ns) noexcept {
     frame_count_ = 0;
-    append_housekeeping(now_ns);
+    if (const auto management = manager_->frame(now_ns)) {
+        append(*management);
+    }
 
     sync_counter_ = sync_counter_ < sync_counter_last ? static_cast<std::uint8_t>(sync_counter_ + 1) : std::uint8_t{1};
     const auto& safety_row = table_->row(Pdo::safety_outputs);
@@ -245,38 +249,6 @@ std::span<const CanFrame> CraneNetwork::encode(const GuardedCommand& command, st
     append(sync);
     sync_stamp_ns_ = now_ns;
     return {frames_.data(), frame_count_};
-}
-
-void CraneNetwork::append_housekeeping(std::int64_t now_ns) noexcept {
-    if (!booted_ || now_ns >= next_heartbeat_ns_) {
-        const auto interval_ns = table_->row(heartbeat_of(Device::controller)).interval_ns;
-        const bool on_time = booted_ && now_ns - next_heartbeat_ns_ < interval_ns;
-        next_heartbeat_ns_ = (on_time ? next_heartbeat_ns_ : now_ns) + interval_ns;
-        auto heartbeat = table_->blank(heartbeat_of(Device::controller), now_ns);
-        heartbeat.data[0] = static_cast<std::uint8_t>(booted_ ? NodeState::operational : NodeState::boot_up);
-        booted_ = true;
-        append(heartbeat);
-        return;
-    }
-    if (!started_all_) {
-        started_all_ = true;
-        needs_start_.fill(false);
-        append_nmt_start(all_nodes, now_ns);
-        return;
-    }
-    const auto waiting = std::ranges::find(needs_start_, true);
-    if (waiting != needs_start_.end()) {
-        *waiting = false;
-        append_nmt_start(table_->node_id(static_cast<Device>(waiting - needs_start_.begin())), now_ns);
-    }
-}
-
-void CraneNetwork::append_nmt_start(std::uint8_t node, std::int64_t now_ns) noexcept {
-    auto start = table_->blank(Message::nmt, now_ns);
-    start.data[0] = static_cast<std::uint8_t>(NmtCommand::start);
-    start.data[1] = node;
-    ++status_.nmt_starts;
-    append(start);
 }
 
 }  // namespace steadyboom::drivers

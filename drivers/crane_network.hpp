@@ -11,6 +11,7 @@
 #include "drivers/can_frame.hpp"
 #include "drivers/command_guard.hpp"
 #include "drivers/device_table.hpp"
+#include "drivers/network_manager.hpp"
 #include "drivers/protection.hpp"
 #include "drivers/sample_check.hpp"
 #include "drivers/valve_driver.hpp"
@@ -18,31 +19,22 @@
 
 namespace steadyboom::drivers {
 
-/// One device as its heartbeats tell.
-struct NodeStatus {
-    NodeState state = NodeState::unknown;  ///< as last heard
-    bool alive = false;                    ///< heard within its consumer time, or it has no heartbeat
-    std::int64_t heartbeat_age_ns = 0;     ///< since the last heartbeat; 0 before the first
-    std::uint32_t boot_ups = 0;
-};
-
 /// What the controller's side of the network has seen. Counters are since construction.
 struct NetworkStatus {
-    std::array<NodeStatus, device_count> nodes;  ///< by Device; the controller's own entry stays unknown
     std::uint64_t accepted_frames = 0;
     std::uint64_t unknown_id_frames = 0;  ///< no device sends this identifier
     std::uint64_t wrong_length_frames = 0;
     std::uint64_t remote_or_extended_frames = 0;
-    std::uint64_t error_frames = 0;         ///< the interface's error messages
-    std::uint32_t last_error_class = 0;     ///< identifier of the newest one (linux/can/error.h)
-    std::uint64_t superseded_frames = 0;    ///< followed by a newer one of the same message in the same tick
-    std::uint64_t rejected_frames = 0;      ///< wrong checksum, counter or repetition of a protected message
-    std::uint64_t late_frames = 0;          ///< answers to a SYNC of more than two ticks ago
-    std::uint64_t unbelieved_frames = 0;    ///< good, but of a message that is not yet or no longer valid
-    std::uint64_t out_of_range_values = 0;  ///< beyond the table's limits, "no value" codes, unknown states
-    std::uint64_t implausible_values = 0;   ///< out of range, or further from the last one than physics allows
-    std::uint64_t faulty_values = 0;        ///< the device itself says that the sample is not good
-    std::uint64_t nmt_starts = 0;           ///< NMT start messages encoded
+    std::uint64_t error_frames = 0;            ///< the interface's error messages
+    std::uint32_t last_error_class = 0;        ///< identifier of the newest one (linux/can/error.h)
+    std::uint64_t superseded_frames = 0;       ///< followed by a newer one of the same message in the same tick
+    std::uint64_t rejected_frames = 0;         ///< wrong checksum, counter or repetition of a protected message
+    std::uint64_t late_frames = 0;             ///< answers to a SYNC of more than two ticks ago
+    std::uint64_t unbelieved_frames = 0;       ///< good, but of a message that is not yet or no longer valid
+    std::uint64_t out_of_range_values = 0;     ///< beyond the table's limits, "no value" codes, unknown states
+    std::uint64_t implausible_values = 0;      ///< out of range, or further from the last one than physics allows
+    std::uint64_t faulty_values = 0;           ///< the device itself says that the sample is not good
+    std::uint64_t not_operational_frames = 0;  ///< process data of a device that the manager has not started
 };
 
 /// The controller's side of the network: frames to a measurement, a guarded command to frames. One decode() and then
@@ -57,17 +49,19 @@ class CraneNetwork {
     /// newest sample of each message wins. A value out of range or too far from the last one is passed over twice
     /// (SampleCheck); one that its device calls faulty makes the channel invalid at once. An invalid channel keeps its
     /// last good value. Ages are in calls of decode(). The stamp is the time of the last encode(): the SYNC on which
-    /// the samples were taken.
+    /// the samples were taken. Process data count only from devices that the manager has brought to operational.
     [[nodiscard]] plant::CraneMeasurement decode(std::span<const CanFrame> frames, std::int64_t now_ns) noexcept;
 
-    /// Frames of this tick, in this order: a heartbeat or else one NMT start (all nodes at first, later any that
-    /// reports boot-up or pre-operational), cut-off output, the valve's command, its twin if it is protected, SYNC.
-    /// Never more than DeviceTable::most_frames_a_tick(). Valid until the next call.
+    /// Frames of this tick, in this order: at most one of the manager's, cut-off output, the valve's command, its twin
+    /// if it is protected, SYNC. Never more than DeviceTable::most_frames_a_tick(). Valid until the next call.
     [[nodiscard]] std::span<const CanFrame> encode(const GuardedCommand& command, std::int64_t now_ns) noexcept;
 
     [[nodiscard]] const NetworkStatus& status() const noexcept { return status_; }
     [[nodiscard]] const DeviceTable& table() const noexcept { return *table_; }
     [[nodiscard]] const ValveStatus& valve() const noexcept { return valve_->status(); }
+    [[nodiscard]] const NodeStatus& node(Device device) const noexcept { return manager_->status(device); }
+    [[nodiscard]] const NetworkManager& manager() const noexcept { return *manager_; }
+    [[nodiscard]] NetworkManager& manager() noexcept { return *manager_; }
 
     /// How far a device's PDO is believed; a message without protection is always valid.
     [[nodiscard]] ReceiverState state(Pdo pdo) const noexcept;
@@ -99,22 +93,16 @@ class CraneNetwork {
     void decode_pdo(const MessageRow& row, const CanFrame& frame, bool poor_quality) noexcept;
     void decode_sensor(const SignalRow& row, const CanFrame& frame, bool poor_quality) noexcept;
     void disbelieve(const MessageRow& row) noexcept;
-    void append_housekeeping(std::int64_t now_ns) noexcept;
-    void append_nmt_start(std::uint8_t node, std::int64_t now_ns) noexcept;
     void append(const CanFrame& frame) noexcept { frames_[frame_count_++] = frame; }
 
-    std::unique_ptr<DeviceTable> table_;  ///< where it stays: the valve's driver refers to it
+    std::unique_ptr<DeviceTable> table_;  ///< where it stays: the next two refer to it
+    std::unique_ptr<NetworkManager> manager_;
     std::unique_ptr<ValveDriver> valve_;
     NetworkStatus status_;
     plant::CraneMeasurement measurement_;
-    std::array<std::int64_t, device_count> heartbeat_stamp_ns_{};
-    std::array<bool, device_count> needs_start_{};
     std::array<Input, pdo_count> inputs_;
     std::array<SampleCheck, plant::sensor_count> checks_;
     std::uint64_t tick_ = 0;
-    bool started_all_ = false;
-    bool booted_ = false;
-    std::int64_t next_heartbeat_ns_ = 0;
     std::int64_t sync_stamp_ns_ = 0;
     std::uint8_t sync_counter_ = 0;
     std::array<CanFrame, most_frames> frames_;

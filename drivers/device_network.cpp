@@ -1,6 +1,7 @@
 #include "drivers/device_network.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "drivers/pdo_codec.hpp"
 
@@ -8,6 +9,20 @@ namespace steadyboom::drivers {
 namespace {
 
 constexpr std::uint8_t all_nodes = 0;
+constexpr std::int64_t ns_per_ms = 1'000'000;
+constexpr std::uint8_t synchronous_each = 1;  ///< transmission types
+constexpr std::uint8_t event_driven = 255;
+constexpr std::uint32_t command_timeout_ms = 25;
+
+constexpr ObjectAddress error_register{0x1001, 0};
+constexpr ObjectAddress heartbeat_time{0x1017, 0};
+
+/// Communication parameter of a TPDO.
+constexpr ObjectAddress tpdo_parameter(const PdoConfig& pdo, std::uint8_t subindex) noexcept {
+    return {static_cast<std::uint16_t>(0x1800 + pdo.number - 1), subindex};
+}
+constexpr std::uint8_t transmission_type = 2;
+constexpr std::uint8_t event_timer = 5;
 
 }  // namespace
 
@@ -17,6 +32,71 @@ DeviceNetwork::DeviceNetwork(const NetworkConfig& config) : table_(config) {
             receivers_[index_of(pdo)].emplace(table_.row(pdo).data_id);
         }
     }
+    for (std::size_t i = 1; i < device_count; ++i) {
+        const auto device = static_cast<Device>(i);
+        auto& node = nodes_[i];
+        node.dictionary = dictionary_of(device);
+        if (table_.config(device).canopen) {
+            node.server.emplace(table_.node_id(device), node.dictionary);
+        } else {
+            node.state = NodeState::operational;
+        }
+    }
+}
+
+std::vector<ObjectEntry> DeviceNetwork::dictionary_of(Device device) const {
+    constexpr auto writable = ObjectAccess::read_write;
+    const auto& config = table_.config();
+    const auto& d = config[device];
+    std::vector<ObjectEntry> entries = {
+        {.object = {0x1000, 0}, .value_raw = d.device_type},
+        {.object = error_register, .size_bytes = 1, .highest_raw = 0xFF},
+        {.object = {0x1018, 1}, .value_raw = d.vendor_id},
+        {.object = {0x1018, 2}, .value_raw = d.product_code},
+        {.object = heartbeat_time,
+         .size_bytes = 2,
+         .access = writable,
+         .value_raw = d.configure ? 0U : static_cast<std::uint32_t>(d.heartbeat_ms),
+         .highest_raw = 0xFFFF},
+    };
+    for (std::size_t i = 0; i < pdo_count; ++i) {
+        const auto pdo = static_cast<Pdo>(i);
+        const auto& p = config[pdo];
+        if (device_of(pdo) != device || from_controller(pdo)) {
+            continue;
+        }
+        const bool on_sync = p.transmission == Transmission::sync && !d.configure;
+        entries.push_back({.object = tpdo_parameter(p, transmission_type),
+                           .size_bytes = 1,
+                           .access = writable,
+                           .value_raw = on_sync ? synchronous_each : event_driven,
+                           .highest_raw = 0xFF});
+        entries.push_back({.object = tpdo_parameter(p, event_timer),
+                           .size_bytes = 2,
+                           .access = writable,
+                           .value_raw = d.configure ? 0U : static_cast<std::uint32_t>(p.event_ms),
+                           .highest_raw = 0xFFFF});
+    }
+    if (device == Device::servo_valve) {
+        const auto index = static_cast<std::uint16_t>(0x1400 + config[Pdo::valve_command].number - 1);
+        entries.push_back(
+            {.object = {index, 5}, .size_bytes = 2, .value_raw = command_timeout_ms, .highest_raw = 0xFFFF});
+    }
+    return entries;
+}
+
+ObjectEntry* DeviceNetwork::object(Device device, ObjectAddress address) noexcept {
+    auto& dictionary = nodes_[index_of(device)].dictionary;
+    const auto found =
+        std::ranges::find_if(dictionary, [&](const ObjectEntry& entry) { return entry.object == address; });
+    return found == dictionary.end() ? nullptr : &*found;
+}
+
+std::uint32_t DeviceNetwork::object_raw(Device device, ObjectAddress address) const noexcept {
+    const auto& dictionary = nodes_[index_of(device)].dictionary;
+    const auto found =
+        std::ranges::find_if(dictionary, [&](const ObjectEntry& entry) { return entry.object == address; });
+    return found == dictionary.end() ? 0U : found->value_raw;
 }
 
 std::vector<CanFilter> DeviceNetwork::filters() const {
@@ -44,7 +124,42 @@ void DeviceNetwork::receive(std::span<const CanFrame> frames, std::int64_t now_n
             }
         } else if (message != Message::none && table_.row(message).kind == MessageKind::pdo) {
             take_order(table_.row(message), frame, now_ns);
+        } else if (message != Message::none && table_.row(message).kind == MessageKind::sdo_request) {
+            answer_sdo(table_.row(message).device, frame, now_ns);
         }
+    }
+}
+
+void DeviceNetwork::answer_sdo(Device device, const CanFrame& frame, std::int64_t now_ns) noexcept {
+    auto& node = nodes_[index_of(device)];
+    if (!node.server || node.state == NodeState::boot_up || node.state == NodeState::stopped || node.silent) {
+        return;
+    }
+    if (const auto answer = node.server->answer(frame, now_ns)) {
+        reply(*answer);
+    }
+}
+
+void DeviceNetwork::reply(const CanFrame& frame) noexcept {
+    if (reply_count_ == replies_.size()) {
+        ++status_.lost_replies;
+        return;
+    }
+    replies_[reply_count_++] = frame;
+}
+
+void DeviceNetwork::set_fault(Device device, std::uint16_t fault_code, bool present) noexcept {
+    auto& node = nodes_[index_of(device)];
+    const bool told = node.emergency_code == fault_code;
+    if (present == told || (!present && node.emergency_code == emergency_none) || !node.server ||
+        node.state == NodeState::boot_up || node.state == NodeState::stopped) {
+        return;
+    }
+    node.emergency_code = present ? fault_code : emergency_none;
+    const auto reg = static_cast<std::uint8_t>(present ? error_generic | error_communication : 0);
+    object(device, error_register)->value_raw = reg;
+    if (!node.silent) {
+        reply(emergency_frame({.node = table_.node_id(device), .code = node.emergency_code, .error_register = reg}, 0));
     }
 }
 
@@ -107,7 +222,12 @@ Message DeviceNetwork::accepted_message(const CanFrame& frame) noexcept {
         ++status_.unknown_id_frames;
         return Message::none;
     }
-    if (frame.length != table_.row(message).length_bytes) {
+    const auto& row = table_.row(message);
+    const bool right_length = frame.length == row.length_bytes;
+    if (row.kind == MessageKind::pdo && operational(row.device)) {
+        set_fault(row.device, emergency_pdo_length, !right_length);
+    }
+    if (!right_length) {
         ++status_.wrong_length_frames;
         return Message::none;
     }
@@ -161,7 +281,16 @@ void DeviceNetwork::obey_nmt(Device device, NmtCommand command) noexcept {
 }
 
 void DeviceNetwork::restart(Device device) noexcept {
-    nodes_[index_of(device)].state = NodeState::boot_up;
+    auto& node = nodes_[index_of(device)];
+    if (!table_.config(device).canopen) {
+        forget_orders(device);
+        return;
+    }
+    node.state = NodeState::boot_up;
+    node.emergency_code = emergency_none;
+    if (auto* heartbeat = object(device, heartbeat_time); heartbeat != nullptr && table_.config(device).configure) {
+        heartbeat->value_raw = 0;
+    }
     forget_orders(device);
 }
 
@@ -187,17 +316,52 @@ void DeviceNetwork::take_valve_order(const CanFrame& frame, std::int64_t now_ns)
     order_.ever = true;
 }
 
+std::int64_t DeviceNetwork::event_interval_ns(Pdo pdo) const noexcept {
+    const Device device = device_of(pdo);
+    const auto& p = table_.config()[pdo];
+    if (!table_.config(device).canopen) {
+        return p.event_ms * ns_per_ms;
+    }
+    const bool by_event = object_raw(device, tpdo_parameter(p, transmission_type)) == event_driven;
+    return by_event ? object_raw(device, tpdo_parameter(p, event_timer)) * ns_per_ms : 0;
+}
+
+bool DeviceNetwork::timer_due(std::int64_t now_ns) const noexcept {
+    for (std::size_t i = 0; i < pdo_count; ++i) {
+        const auto pdo = static_cast<Pdo>(i);
+        if (!from_controller(pdo) && operational(device_of(pdo)) && event_interval_ns(pdo) > 0 &&
+            now_ns >= next_event_ns_[i]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool DeviceNetwork::due(const MessageRow& row, bool synchronous, std::int64_t now_ns) noexcept {
+    const auto& p = table_.config()[row.pdo];
+    const bool by_sync = table_.config(row.device).canopen
+                             ? object_raw(row.device, tpdo_parameter(p, transmission_type)) == synchronous_each
+                             : row.cycle == Cycle::on_sync;
+    if (by_sync) {
+        return synchronous;
+    }
+    const auto interval_ns = event_interval_ns(row.pdo);
+    auto& next_ns = next_event_ns_[index_of(row.pdo)];
+    if (interval_ns == 0 || now_ns < next_ns) {
+        return false;
+    }
+    next_ns = (now_ns - next_ns < interval_ns ? next_ns : now_ns) + interval_ns;
+    return true;
+}
+
 std::span<const CanFrame> DeviceNetwork::answer_sync(const plant::SensorVector& sensors, const ValveFeedback& feedback,
                                                      std::int64_t now_ns) noexcept {
-    if (!sync_pending_) {
-        return {};
-    }
-    sync_pending_ = false;
+    const bool synchronous = std::exchange(sync_pending_, false);
     std::size_t count = 0;
     for (const auto& message : table_.messages()) {
         const auto& node = nodes_[index_of(message.device)];
-        if (message.cycle != Cycle::on_sync || node.silent || message_silent_[index_of(message.message)] ||
-            !operational(message.device)) {
+        if (message.kind != MessageKind::pdo || message.from_controller || !operational(message.device) ||
+            !due(message, synchronous, now_ns) || node.silent || message_silent_[index_of(message.message)]) {
             continue;
         }
         auto frame = table_.blank(message.message, now_ns);
@@ -226,27 +390,34 @@ std::span<const CanFrame> DeviceNetwork::answer_sync(const plant::SensorVector& 
 
 std::span<const CanFrame> DeviceNetwork::housekeeping(std::int64_t now_ns) noexcept {
     std::size_t count = 0;
-    for (const auto& message : table_.messages()) {
-        if (message.kind != MessageKind::heartbeat || message.from_controller) {
+    for (std::size_t i = 1; i < device_count; ++i) {
+        const auto device = static_cast<Device>(i);
+        auto& node = nodes_[i];
+        if (!table_.config(device).canopen) {
             continue;
         }
-        auto& node = nodes_[index_of(message.device)];
         const bool booting = node.state == NodeState::boot_up;
-        if (!booting && (message.interval_ns == 0 || now_ns < node.next_heartbeat_ns)) {
+        const auto interval_ns = object_raw(device, heartbeat_time) * ns_per_ms;
+        if (!booting && (interval_ns == 0 || now_ns < node.next_heartbeat_ns)) {
             continue;
         }
-        const bool on_time = !booting && now_ns - node.next_heartbeat_ns < message.interval_ns;
-        node.next_heartbeat_ns = (on_time ? node.next_heartbeat_ns : now_ns) + message.interval_ns;
-        auto frame = table_.blank(message.message, now_ns);
+        const bool on_time = !booting && now_ns - node.next_heartbeat_ns < interval_ns;
+        node.next_heartbeat_ns = (on_time ? node.next_heartbeat_ns : now_ns) + interval_ns;
+        auto frame = table_.blank(heartbeat_of(device), now_ns);
         frame.data[0] = static_cast<std::uint8_t>(node.state);
         if (booting) {
             node.state = NodeState::pre_operational;
         }
         if (!node.silent) {
-            heartbeats_[count++] = frame;
+            outbox_[count++] = frame;
         }
     }
-    return {heartbeats_.data(), count};
+    for (std::size_t i = 0; i < reply_count_; ++i) {
+        outbox_[count] = replies_[i];
+        outbox_[count++].stamp_ns = now_ns;
+    }
+    reply_count_ = 0;
+    return {outbox_.data(), count};
 }
 
 void DeviceNetwork::set_silent(plant::Sensor sensor, bool silent) noexcept {

@@ -10,8 +10,10 @@
 #include "drivers/can_frame.hpp"
 #include "drivers/cia408.hpp"
 #include "drivers/device_table.hpp"
+#include "drivers/emcy.hpp"
 #include "drivers/inverted_twin.hpp"
 #include "drivers/protection.hpp"
+#include "drivers/sdo_server.hpp"
 #include "plant/crane_measurement.hpp"
 
 namespace steadyboom::drivers {
@@ -43,11 +45,15 @@ struct DeviceNetworkStatus {
     std::uint64_t error_frames = 0;
     std::uint64_t not_operational_frames = 0;  ///< process data for a node that is not operational
     std::uint64_t unknown_orders = 0;          ///< NMT commands that mean nothing
+    std::uint64_t lost_replies = 0;            ///< more SDO answers and emergencies than fit between two sends
     std::uint64_t rejected_orders = 0;         ///< wrong checksum or counter, twin missing or not the inverse
 };
 
-/// The crane's side of the network: all its devices in one object, each with an NMT state of its own. Allocates nothing
-/// after construction. A round is receive(), then housekeeping(), then answer_sync() if sync_pending().
+/// The crane's side of the network: all its devices in one object, each with an NMT state and an object dictionary of
+/// its own: 1000h, 1001h, 1017h, 1018h, the communication parameters of its PDOs, and the valve's 1400h:05, its command
+/// timeout. A device that the manager may configure comes as bought ones often do: heartbeat off, PDOs on no SYNC.
+/// Allocates nothing after construction. A round is receive(), then housekeeping(), then answer_sync() if
+/// sync_pending() or timer_due().
 class DeviceNetwork {
   public:
     /// Throws std::invalid_argument as DeviceTable does.
@@ -62,12 +68,22 @@ class DeviceNetwork {
     [[nodiscard]] bool sync_pending() const noexcept { return sync_pending_; }
     [[nodiscard]] std::uint8_t sync_counter() const noexcept { return sync_counter_; }
 
-    /// TPDOs of every operational node that is not silent, values rounded to the bus's resolution; beyond a channel's
-    /// range its status byte says overflow or underflow. Empty if no SYNC is pending. Valid until the next call.
+    /// TPDOs of every operational node that is not silent, each if it is due, by SYNC or by its timer; values rounded
+    /// to the bus's resolution; beyond a channel's range its status byte says overflow or underflow. Valid until the
+    /// next call.
     [[nodiscard]] std::span<const CanFrame> answer_sync(const plant::SensorVector& sensors,
                                                         const ValveFeedback& feedback, std::int64_t now_ns) noexcept;
 
-    /// Boot-up messages first, then a heartbeat of each node every 100 ms. Valid until the next call.
+    /// Some PDO's event timer has run out.
+    [[nodiscard]] bool timer_due(std::int64_t now_ns) const noexcept;
+
+    /// A device finds something wrong with itself, or well again: an emergency message when that changes.
+    void set_fault(Device device, std::uint16_t fault_code, bool present) noexcept;
+
+    /// Entry of a device's object dictionary; null if it has none such. For fault injection.
+    [[nodiscard]] ObjectEntry* object(Device device, ObjectAddress address) noexcept;
+
+    /// Boot-up messages first, then heartbeats by 1017h, SDO answers, emergency messages. Valid until the next call.
     [[nodiscard]] std::span<const CanFrame> housekeeping(std::int64_t now_ns) noexcept;
 
     [[nodiscard]] NodeState state(Device device) const noexcept { return nodes_[index_of(device)].state; }
@@ -91,8 +107,17 @@ class DeviceNetwork {
         NodeState state = NodeState::boot_up;  ///< boot_up until its boot-up message has left
         bool silent = false;
         std::int64_t next_heartbeat_ns = 0;
+        std::vector<ObjectEntry> dictionary;
+        std::optional<SdoServer> server;
+        std::uint16_t emergency_code = 0;  ///< of the fault that it has told of
     };
 
+    [[nodiscard]] std::vector<ObjectEntry> dictionary_of(Device device) const;
+    [[nodiscard]] std::uint32_t object_raw(Device device, ObjectAddress address) const noexcept;
+    [[nodiscard]] std::int64_t event_interval_ns(Pdo pdo) const noexcept;
+    [[nodiscard]] bool due(const MessageRow& row, bool synchronous, std::int64_t now_ns) noexcept;
+    void reply(const CanFrame& frame) noexcept;
+    void answer_sdo(Device device, const CanFrame& frame, std::int64_t now_ns) noexcept;
     [[nodiscard]] Message accepted_message(const CanFrame& frame) noexcept;
     void obey_nmt(const CanFrame& frame) noexcept;
     void obey_nmt(Device device, NmtCommand command) noexcept;
@@ -112,7 +137,10 @@ class DeviceNetwork {
     bool sync_pending_ = false;
     std::uint8_t sync_counter_ = 0;
     std::array<CanFrame, message_count> answers_;
-    std::array<CanFrame, device_count> heartbeats_;
+    std::array<std::int64_t, pdo_count> next_event_ns_{};  ///< of the PDOs sent by timer
+    std::array<CanFrame, 64> outbox_;
+    std::array<CanFrame, 32> replies_;  ///< SDO answers and emergency messages that wait for the next send
+    std::size_t reply_count_ = 0;
 };
 
 }  // namespace steadyboom::drivers

@@ -138,11 +138,20 @@ struct SignalConfig {
     double fastest_1_s = 0.0;  ///< largest change in one second that physics allows; 0: not checked
 };
 
+/// Where the valve keeps the time after which it centres itself without commands, and the longest that is safe. The
+/// object must hold 1 to `longest_raw`; 0 would mean that it never does.
+struct ValveTimeoutConfig {
+    std::uint16_t object = 0x1400;  ///< 0: not asked
+    std::uint8_t subindex = 5;      ///< 1400h:05 is the event timer of RPDO1 in ms (CiA 301)
+    std::uint32_t longest_raw = 25;
+};
+
 /// The network of one crane. Defaults are those of the virtual crane.
 struct NetworkConfig {
     double spool_travel_m = 7.6e-3;          ///< opening at 100 % of travel
     std::int64_t period_ns = 5'000'000;      ///< one tick: SYNC to SYNC
     std::uint32_t bit_rate_bit_s = 500'000;  ///< 125 000, 250 000, 500 000 or 1 000 000
+    ValveTimeoutConfig valve_timeout;
     std::array<DeviceConfig, device_count> devices = default_devices();
     std::array<PdoConfig, pdo_count> pdos = default_pdos();
     std::array<SignalConfig, signal_count> signals = default_signals();

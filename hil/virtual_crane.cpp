@@ -29,7 +29,7 @@ VirtualCrane::VirtualCrane(const VirtualCraneConfig& config)
       travel_m_(config.crane.actuator.spool_travel_m),
       random_(config.seed) {
     state_.head<state_count>() = equilibrium_.state;
-    outbox_.reserve(drivers::message_count + drivers::device_count);
+    outbox_.reserve(2 * drivers::message_count);
 }
 
 void VirtualCrane::receive(std::span<const drivers::CanFrame> frames, std::int64_t now_ns) noexcept {
@@ -52,8 +52,9 @@ std::span<const drivers::CanFrame> VirtualCrane::frames_to_send(std::int64_t now
     const auto append = [&](std::span<const drivers::CanFrame> frames) {
         outbox_.insert(outbox_.end(), frames.begin(), frames.end());
     };
+    network_.set_fault(drivers::Device::servo_valve, drivers::emergency_rpdo_timeout, valve_.timed_out());
     append(network_.housekeeping(now_ns));
-    if (network_.sync_pending()) {
+    if (network_.sync_pending() || network_.timer_due(now_ns)) {
         append(network_.answer_sync(noisy_sensors(),
                                     {.status = valve_.status(state_[spool_index]),
                                      .cutoff_open = valve_.cutoff_open(),

@@ -132,6 +132,7 @@ void ControlTick::run(const TickStart& start) noexcept {
     r.receive_duration_ns = lap_ns();
 
     const plant::CraneMeasurement measured = network_.decode({frames_.data(), count}, start.woke_ns);
+    health_.device_missing = !network_.manager().all_required_operational();
     r.decode_duration_ns = lap_ns();
 
     observer_.correct(measured);

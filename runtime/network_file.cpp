@@ -103,6 +103,10 @@ void declare_network(TomlSchema& schema, NetworkConfig& config) {
     for (std::size_t i = 0; i < drivers::device_count; ++i) {
         declare_device(schema, static_cast<Device>(i), config.devices[i]);
     }
+    schema.optional_section("valve_timeout");
+    schema.integer("object", config.valve_timeout.object, 0, 0xFFFF);
+    schema.integer("subindex", config.valve_timeout.subindex, 0, 0xFF);
+    schema.integer("longest_raw", config.valve_timeout.longest_raw, 1, 0xFFFF'FFFF);
     for (std::size_t i = 0; i < drivers::pdo_count; ++i) {
         declare_pdo(schema, static_cast<Pdo>(i), config.pdos[i]);
     }

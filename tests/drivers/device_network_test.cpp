@@ -13,6 +13,9 @@ namespace {
 NetworkConfig without_protection() {
     NetworkConfig config;
     config.protect_all(Protection::none);
+    for (auto& device : config.devices) {
+        device.configure = false;  // they come as the table says
+    }
     return config;
 }
 

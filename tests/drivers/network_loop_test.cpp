@@ -14,7 +14,7 @@ TEST_F(NetworkLoop, NodesAreOperationalWithinTheFirstTicks) {
     }
     for (std::size_t i = 1; i < device_count; ++i) {
         EXPECT_EQ(devices_.state(static_cast<Device>(i)), NodeState::operational);
-        EXPECT_TRUE(controller_.status().nodes[i].alive);
+        EXPECT_TRUE(controller_.node(static_cast<Device>(i)).alive);
     }
 }
 
@@ -39,7 +39,7 @@ TEST_F(NetworkLoop, SamplesArriveOneTickAfterTheSyncTheyAnswerToWithinHalfAStep)
     EXPECT_EQ(controller_.status().unknown_id_frames + controller_.status().wrong_length_frames, 0U);
     EXPECT_EQ(devices_.status().unknown_id_frames + devices_.status().wrong_length_frames, 0U);
     for (std::size_t i = 1; i < device_count; ++i) {
-        EXPECT_LE(controller_.status().nodes[i].heartbeat_age_ns, 100'000'000);
+        EXPECT_LE(controller_.node(static_cast<Device>(i)).heartbeat_age_ns, 100'000'000);
     }
 }
 
@@ -94,7 +94,7 @@ TEST_F(NetworkLoop, RestartedNodeIsStartedAgainAndBelievedAfterTenGoodTicks) {
         ++ticks_until_believed;
     }
     EXPECT_LE(ticks_until_believed, 13);
-    EXPECT_EQ(controller_.status().nodes[index_of(Device::boom_inclinometer)].boot_ups, 2U);
+    EXPECT_EQ(controller_.node(Device::boom_inclinometer).boot_ups, 2U);
 }
 
 TEST_F(NetworkLoop, AllNodesRestartedAtOnceAreBackWithinASecond) {
@@ -121,8 +121,8 @@ TEST_F(NetworkLoop, SilentNodeAgesAndIsMissedAfterTheConsumerTime) {
         ASSERT_EQ(measured.age_ticks[plant::line_tension_N], i);
         ASSERT_TRUE(measured.fresh(plant::boom_angle_rad));
     }
-    EXPECT_FALSE(controller_.status().nodes[index_of(Device::load_pin)].alive);
-    EXPECT_TRUE(controller_.status().nodes[index_of(Device::servo_valve)].alive);
+    EXPECT_FALSE(controller_.node(Device::load_pin).alive);
+    EXPECT_TRUE(controller_.node(Device::servo_valve).alive);
     devices_.set_silent(Device::load_pin, false);
     for (int i = 0; i < 100; ++i) {
         (void)tick();

@@ -185,8 +185,8 @@ TEST_P(ReceiveGateTest, WhatTheGateRefusesLeavesNoTraceInTheMeasurement) {
             }
         }
     }
-    for (const auto& node : network.status().nodes) {
-        EXPECT_EQ(node.state, NodeState::unknown);
+    for (std::size_t i = 0; i < device_count; ++i) {
+        EXPECT_EQ(network.node(static_cast<Device>(i)).state, NodeState::unknown);
     }
 }
 
