@@ -12,6 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 
 void declare_case(runtime::TomlSchema& schema, Case& loaded) {
+    schema.word<BoomKind>("boom", loaded.boom, boom_kinds);
+    schema.optional();
     runtime::declare_crane_file(schema, loaded);
     schema.section("manoeuvre");
     runtime::declare_manoeuvre(schema, loaded.manoeuvre);

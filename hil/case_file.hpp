@@ -4,12 +4,14 @@
 #include <string>
 #include <string_view>
 
+#include "hil/boom_kind.hpp"
 #include "runtime/crane_file.hpp"
 
 namespace steadyboom::hil {
 
 /// A true crane and what happens to it. The form of the file is documented in hil/cases/case-a.toml.
 struct Case : runtime::CraneFile {
+    BoomKind boom = BoomKind::links;
     runtime::Manoeuvre manoeuvre;
 };
 

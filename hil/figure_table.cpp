@@ -98,9 +98,13 @@ std::string figure_table(std::span<const RunResult> runs) {
 
 std::string figures_json(const RunResult& run, const RunFigures* uncontrolled) {
     const RunOptions& options = run.options;
-    nlohmann::ordered_json json{
-        {"law", name_of(options.law)}, {"case", options.crane_case.name},  {"bus", run.bus},
-        {"rate_Hz", options.rate_Hz},  {"duration_s", options.duration_s}, {"seed", options.seed}};
+    nlohmann::ordered_json json{{"law", name_of(options.law)},
+                                {"case", options.crane_case.name},
+                                {"boom", name_of(options.crane_case.boom)},
+                                {"bus", run.bus},
+                                {"rate_Hz", options.rate_Hz},
+                                {"duration_s", options.duration_s},
+                                {"seed", options.seed}};
     for (const FigureRow& row : figure_rows) {
         json[std::string(row.key)] = run.figures.*row.value;
     }

@@ -73,6 +73,7 @@ VirtualCraneConfig crane_config(const RunOptions& options, const runtime::Contro
     drivers::NetworkConfig network = config.network;
     network.spool_travel_m = options.crane_case.crane.actuator.spool_travel_m;
     return {.crane = options.crane_case.crane,
+            .boom = options.crane_case.boom,
             .network = network,
             .step_s = 1e-9 * static_cast<double>(network.period_ns) / steps_per_tick(network.period_ns),
             .seed = options.seed};
@@ -91,7 +92,7 @@ struct LockstepBench::Parts {
           crane(crane_config(options, config)),
           tick(config, bus.endpoint(0), clock, mailbox, ring),
           scripted_operator(mailbox),
-          figures(crane.dynamics(), crane.equilibrium(), options.duration_s),
+          figures(crane.equilibrium().state, options.duration_s),
           result{.options = options, .bus = "loopback", .stayed_engaged = true} {
         result.ticks.reserve(static_cast<std::size_t>(last_tick) + 1);
         result.frames.reserve(static_cast<std::size_t>(last_tick + 1) * drivers::message_count);

@@ -40,6 +40,7 @@ hil::PlantRecord record_of(const hil::TruthSample& truth, std::uint64_t step, st
                             .contact_fraction = truth.contact_fraction,
                             .load_pressure_Pa = truth.load_pressure_Pa,
                             .hydraulic_power_W = truth.hydraulic_power_W,
+                            .residual_energy_J = truth.residual_energy_J,
                             .valve_timeouts = valve_timeouts};
     std::copy(truth.state.begin(), truth.state.end(), record.state.begin());
     return record;
@@ -47,6 +48,7 @@ hil::PlantRecord record_of(const hil::TruthSample& truth, std::uint64_t step, st
 
 int stand_in_for_the_crane(const hil::PlantConfig& config) {
     hil::VirtualCrane crane({.crane = config.crane_case.crane,
+                             .boom = config.crane_case.boom,
                              .network = config.network,
                              .step_s = 1e-9 * static_cast<double>(step_ns),
                              .seed = static_cast<std::uint64_t>(config.seed)});
@@ -69,8 +71,9 @@ int stand_in_for_the_crane(const hil::PlantConfig& config) {
     runtime::MonotonicClock clock;
     const std::int64_t epoch_ns = clock.now_ns() + wake_ns;
     runtime::PeriodicLoop loop(clock, wake_ns, epoch_ns);
-    spdlog::info("{} on {}: brake event {} s from now, end {} s after it; {}", config.crane_case.name, config.interface,
-                 config.standing_s, config.duration_s, grant.summary());
+    spdlog::info("{} with boom {} on {}: brake event {} s from now, end {} s after it; {}", config.crane_case.name,
+                 hil::name_of(config.crane_case.boom), config.interface, config.standing_s, config.duration_s,
+                 grant.summary());
     std::array<drivers::CanFrame, 512> frames;
     std::int64_t step = 0;
     ring.push(record_of(crane.truth(t_s(0)), 0, epoch_ns, 0));

@@ -22,6 +22,7 @@
 #include "hil/plant_config.hpp"
 #include "hil/plant_record.hpp"
 #include "hil/scratch_folder.hpp"
+#include "hil/true_crane.hpp"
 #include "hil/whole_file.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/controller_config.hpp"
@@ -217,8 +218,7 @@ RunResult run_on_interface(const RunOptions& options, const std::string& interfa
     auto tick_ring = open_ring<runtime::TickRecord>(controller.telemetry_ring_path, controller_process);
     Operator bench_operator(controller.operator_socket_path);
 
-    const plant::CraneDynamics crane(options.crane_case.crane);
-    FigureAccumulator figures(crane, plant::find_equilibrium(crane), options.duration_s);
+    FigureAccumulator figures(rest_of(options.crane_case).state, options.duration_s);
     std::vector<PlantRecord> truth;
     std::vector<runtime::TickRecord> ticks;
     std::vector<drivers::CanFrame> frames(512);

@@ -16,8 +16,8 @@
 #include "hil/figure_table.hpp"
 #include "hil/html_page.hpp"
 #include "hil/plot.hpp"
+#include "hil/true_crane.hpp"
 #include "hil/whole_file.hpp"
-#include "plant/energy.hpp"
 #include "plant/equilibrium.hpp"
 
 namespace steadyboom::hil {
@@ -93,8 +93,7 @@ class Report : HtmlPage {
         : HtmlPage(runs.front().options.crane_case.name, style),
           runs_(runs),
           crane_(runs.front().options.crane_case.crane),
-          rest_(plant::find_equilibrium(crane_)),
-          energy_(crane_, rest_.state),
+          rest_(rest_of(runs.front().options.crane_case)),
           uncontrolled_(uncontrolled_run(runs)),
           best_(best_run(runs)) {}
 
@@ -389,8 +388,7 @@ class Report : HtmlPage {
         put("<section>\n<h2>Motion</h2>\n<p class=\"soft\">Deviations from rest.</p>\n");
         put_run_key();
         put("<div class=\"plots\">\n");
-        Plot energy =
-            overlaid("energy [kJ]", [&](const RunTick& tick) { return 1e-3 * energy_.energy_J(tick.truth.state); });
+        Plot energy = overlaid("energy [kJ]", [&](const RunTick& tick) { return 1e-3 * tick.truth.residual_energy_J; });
         energy.x_range.low = 0.0;
         energy.logarithmic = true;
         put_history(std::move(energy), "Residual energy", "kinetic and elastic, of the whole crane; logarithmic");
@@ -543,6 +541,11 @@ class Report : HtmlPage {
               fmt::format("K1 {:g} m/rad, K2 {:g} m s/rad, K3 {:g} m/m, K4 {:g} m s/rad", gains.boom_angle_gain_m_rad,
                           gains.boom_rate_gain_m_s_rad, gains.joint_gain_m_m, gains.swing_rate_gain_m_s_rad));
         entry("frames on the bus", said([](const RunResult& run) { return fmt::format("{}", run.frames.size()); }));
+        entry("boom of the crane", said([](const RunResult& run) {
+                  return run.options.crane_case.boom == BoomKind::links
+                             ? std::string("three links, as the controller models it")
+                             : std::string("beam with three bending modes; the controller models three links");
+              }));
         entry("crane", fmt::format("{:016x}", runtime::crane_hash(shown.crane)));
         entry("Steadyboom", STEADYBOOM_VERSION);
         put("</dl>\n");
@@ -551,7 +554,6 @@ class Report : HtmlPage {
     std::span<const RunResult> runs_;
     plant::CraneDynamics crane_;
     plant::Equilibrium rest_;
-    plant::ResidualEnergy energy_;
     const RunResult* uncontrolled_;
     const RunResult& best_;
 };

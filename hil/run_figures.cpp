@@ -8,8 +8,8 @@ namespace steadyboom::hil {
 
 using namespace plant;
 
-FigureAccumulator::FigureAccumulator(const CraneDynamics& crane, const Equilibrium& equilibrium, double duration_s)
-    : energy_(crane, equilibrium.state), reference_(equilibrium.state), duration_s_(duration_s) {
+FigureAccumulator::FigureAccumulator(const CraneState& equilibrium, double duration_s)
+    : reference_(equilibrium), duration_s_(duration_s) {
     if (!(duration_s > 0.0)) {
         throw std::invalid_argument("figures: the duration must be positive");
     }
@@ -48,7 +48,7 @@ void FigureAccumulator::add(const TruthSample& sample) noexcept {
     }
     if (sample.t_s > duration_s_ - 1.0) {
         residual_time_s_ += span_s;
-        residual_J_s_ += span_s * energy_.energy_J(sample.state);
+        residual_J_s_ += span_s * sample.residual_energy_J;
     }
 }
 

@@ -4,8 +4,6 @@
 #include <string_view>
 
 #include "hil/truth_sample.hpp"
-#include "plant/energy.hpp"
-#include "plant/equilibrium.hpp"
 
 namespace steadyboom::hil {
 
@@ -63,9 +61,9 @@ inline constexpr std::array figure_rows{
 /// Sums up a run as it goes, one sample per integration step.
 class FigureAccumulator {
   public:
-    /// Figures are of 0 <= t_s <= duration_s; other samples are ignored. Throws std::invalid_argument unless
-    /// duration_s is positive.
-    FigureAccumulator(const plant::CraneDynamics& crane, const plant::Equilibrium& equilibrium, double duration_s);
+    /// Figures are of 0 <= t_s <= duration_s; other samples are ignored. `equilibrium` is the state that excursions
+    /// count from. Throws std::invalid_argument unless duration_s is positive.
+    FigureAccumulator(const plant::CraneState& equilibrium, double duration_s);
 
     /// Samples come in the order of time; each stands for the time since the one before it.
     void add(const TruthSample& sample) noexcept;
@@ -73,7 +71,6 @@ class FigureAccumulator {
     [[nodiscard]] RunFigures figures() const noexcept;
 
   private:
-    plant::ResidualEnergy energy_;
     plant::CraneState reference_;
     double duration_s_;
     double last_t_s_ = 0.0;

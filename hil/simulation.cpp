@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "hil/true_crane.hpp"
 #include "plant/adaptive_runge_kutta.hpp"
 #include "plant/runge_kutta.hpp"
 
@@ -14,8 +15,9 @@ using namespace plant;
 
 namespace {
 
-AdaptiveRungeKutta<CraneState>::Tolerances tolerances(double relative) {
-    return {.relative = relative, .absolute = CraneState::Constant(0.1 * relative), .max_step_s = 0.01};
+template <class State>
+typename AdaptiveRungeKutta<State>::Tolerances tolerances(double relative) {
+    return {.relative = relative, .absolute = State::Constant(0.1 * relative), .max_step_s = 0.01};
 }
 
 void check(const SimulationOptions& options) {
@@ -32,31 +34,31 @@ void check(const SimulationOptions& options) {
     require(options.tolerance >= 1e-13 && options.tolerance <= 1e-2, "the tolerance must be within 1e-13 and 1e-2");
 }
 
-}  // namespace
+template <class Boom>
+RunFigures simulate_with(const SimulationOptions& options, const std::function<void(const TruthSample&)>& output) {
+    using Crane = CraneDynamicsOf<Boom>;
+    using State = typename Crane::State;
+    constexpr int piston = Crane::Layout::piston_index;
+    const TrueCrane<Boom> true_crane(options.crane_case.crane);
+    const Crane& crane = true_crane.dynamics();
+    const CraneState rest = true_crane.thesis_equilibrium().state;
+    const controllers::Law law(options.law, options.crane_case.gains, rest);
+    FigureAccumulator figures(rest, options.duration_s);
 
-RunFigures simulate(const SimulationOptions& options, const std::function<void(const TruthSample&)>& output) {
-    check(options);
-    const CraneDynamics crane(options.crane_case.crane);
-    const Equilibrium equilibrium = find_equilibrium(crane);
-    const controllers::Law law(options.law, options.crane_case.gains, equilibrium.state);
-    FigureAccumulator figures(crane, equilibrium, options.duration_s);
-
-    const auto opening_m = [&](const CraneState& x) {
-        return crane.actuator().clamp_opening_m(law.command(x).opening_m);
+    const auto opening_m = [&](const State& x) {
+        return crane.actuator().clamp_opening_m(law.command(crane.thesis_state(x)).opening_m);
     };
-    const auto rate = [&](double, const CraneState& x) { return crane.derivative(x, opening_m(x)); };
-    const auto sample = [&](const CraneState& x, double t_s) {
-        return sample_truth(crane, x, opening_m(x), equilibrium.pendent_tension_N, t_s);
-    };
-    const auto finite = [](const CraneState& x, double t_s) {
+    const auto rate = [&](double, const State& x) { return crane.derivative(x, opening_m(x)); };
+    const auto sample = [&](const State& x, double t_s) { return true_crane.sample(x, opening_m(x), t_s); };
+    const auto finite = [](const State& x, double t_s) {
         if (!x.allFinite()) {
             throw IntegrationError("the state is no longer finite at t = " + std::to_string(t_s) +
                                    " s; a fixed step must be shorter than about 6 ms for this crane's fastest mode");
         }
     };
 
-    CraneState state = equilibrium.state;
-    state[velocity_offset + R9_m] = options.crane_case.manoeuvre.brake_rate_m_s();
+    State state = true_crane.equilibrium().state;
+    state[Crane::Layout::velocity_offset + R9_m] = options.crane_case.manoeuvre.brake_rate_m_s();
     const TruthSample start = sample(state, 0.0);
     figures.add(start);
     output(start);
@@ -84,12 +86,12 @@ RunFigures simulate(const SimulationOptions& options, const std::function<void(c
         for (long i = 0; i < steps; ++i) {
             const double t0_s = static_cast<double>(i) * h;
             const double t1_s = i + 1 == steps ? std::max(options.duration_s, t0_s + h) : t0_s + h;
-            CraneState next = runge_kutta_step(rate, t0_s, state, h);
-            next[piston_index] = crane.actuator().clamp_piston_m(next[piston_index]);
+            State next = runge_kutta_step(rate, t0_s, state, h);
+            next[piston] = crane.actuator().clamp_piston_m(next[piston]);
             finite(next, t1_s);
-            const CraneState slope0 = h * rate(t0_s, state);
-            const CraneState slope1 = h * rate(t0_s + h, next);
-            emit(t1_s, [&](double t_s) -> CraneState {
+            const State slope0 = h * rate(t0_s, state);
+            const State slope1 = h * rate(t0_s + h, next);
+            emit(t1_s, [&](double t_s) -> State {
                 const double u = (t_s - t0_s) / h;
                 return (1 + 2 * u) * (1 - u) * (1 - u) * state + u * (1 - u) * (1 - u) * slope0 +
                        u * u * (3 - 2 * u) * next - u * u * (1 - u) * slope1;
@@ -98,21 +100,29 @@ RunFigures simulate(const SimulationOptions& options, const std::function<void(c
             figures.add(sample(state, t0_s + h));
         }
     } else {
-        AdaptiveRungeKutta<CraneState> integrator(0.0, state, tolerances(options.tolerance));
+        AdaptiveRungeKutta<State> integrator(0.0, state, tolerances<State>(options.tolerance));
         while (integrator.time_s() < options.duration_s) {
             integrator.advance(rate);
             finite(integrator.state(), integrator.time_s());
             emit(integrator.time_s(), [&](double t_s) { return integrator.interpolate(t_s); });
             figures.add(sample(integrator.state(), integrator.time_s()));
-            const double piston_m = crane.actuator().clamp_piston_m(integrator.state()[piston_index]);
-            if (piston_m != integrator.state()[piston_index]) {
-                CraneState stopped = integrator.state();
-                stopped[piston_index] = piston_m;
+            const double piston_m = crane.actuator().clamp_piston_m(integrator.state()[piston]);
+            if (piston_m != integrator.state()[piston]) {
+                State stopped = integrator.state();
+                stopped[piston] = piston_m;
                 integrator.restart(stopped);
             }
         }
     }
     return figures.figures();
+}
+
+}  // namespace
+
+RunFigures simulate(const SimulationOptions& options, const std::function<void(const TruthSample&)>& output) {
+    check(options);
+    return with_boom(options.crane_case.boom,
+                     [&]<class Boom>(std::type_identity<Boom>) { return simulate_with<Boom>(options, output); });
 }
 
 }  // namespace steadyboom::hil

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <random>
 #include <span>
 #include <vector>
 
 #include "drivers/device_network.hpp"
+#include "hil/boom_kind.hpp"
 #include "hil/truth_sample.hpp"
 #include "hil/virtual_valve.hpp"
 #include "plant/equilibrium.hpp"
@@ -14,6 +16,7 @@ namespace steadyboom::hil {
 
 struct VirtualCraneConfig {
     plant::CraneParameters crane;  ///< the true one; its valve is always the nonlinear one here
+    BoomKind boom = BoomKind::links;
     drivers::NetworkConfig network;
     double step_s = 0.0005;  ///< integration step; four and more times finer than the observer's
     std::uint64_t seed = 1;  ///< of the sensor noise
@@ -28,6 +31,7 @@ class VirtualCrane {
   public:
     /// Stands at static equilibrium. Throws plant::EquilibriumError, std::invalid_argument.
     explicit VirtualCrane(const VirtualCraneConfig& config);
+    ~VirtualCrane();
 
     /// Frames that reached the devices.
     void receive(std::span<const drivers::CanFrame> frames, std::int64_t now_ns) noexcept;
@@ -43,27 +47,25 @@ class VirtualCrane {
 
     [[nodiscard]] TruthSample truth(double t_s) const noexcept;
 
-    [[nodiscard]] const plant::CraneDynamics& dynamics() const noexcept { return crane_; }
+    /// In the thesis's coordinates.
     [[nodiscard]] const plant::Equilibrium& equilibrium() const noexcept { return equilibrium_; }
     [[nodiscard]] drivers::DeviceNetwork& network() noexcept { return network_; }
     [[nodiscard]] const VirtualValve& valve() const noexcept { return valve_; }
     [[nodiscard]] double step_s() const noexcept { return step_s_; }
 
   private:
-    static constexpr int spool_index = plant::state_count;
-    static constexpr int spool_rate_index = plant::state_count + 1;
-    using State = Eigen::Matrix<double, plant::state_count + 2, 1>;
+    class Motion;
+    template <class Boom>
+    class MotionOf;
 
     [[nodiscard]] plant::SensorVector noisy_sensors() noexcept;
 
-    plant::CraneDynamics crane_;
+    std::unique_ptr<Motion> motion_;
     plant::Equilibrium equilibrium_;
     drivers::DeviceNetwork network_;
     VirtualValve valve_;
     plant::SensorVector noise_sigma_;
     double step_s_;
-    double travel_m_;
-    State state_ = State::Zero();
     std::mt19937_64 random_;
     std::normal_distribution<double> normal_;
     std::vector<drivers::CanFrame> outbox_;

@@ -148,7 +148,8 @@ void crane_jacobian(const CraneDynamics& crane, const CraneState& state, double 
     result.derivative = crane.derivative(state, valve_opening_m);
     const StructureParameters& s = crane.parameters().structure;
     const RopeParameters& ropes = crane.parameters().ropes;
-    const Boom& boom = crane.boom();
+    const LinkBoom& boom = crane.boom();
+    const auto chord_slope = [&](double q, double other) { return boom.chord_slope({q, other})[0]; };
     const double m_B = s.boom_link_mass_kg;
     const double m_L = s.load_mass_kg;
     const auto moving = [&](Coordinate c) {
@@ -160,20 +161,19 @@ void crane_jacobian(const CraneDynamics& crane, const CraneState& state, double 
     const Moving q2 = moving(q2_m);
     const Moving phi6 = moving(phi6_rad);
     const Moving phi9 = moving(phi9_rad);
-    const Moving R8{boom.chord_m(q1.value, q2.value),
-                    boom.chord_slope(q1.value, q2.value) * q1.rate + boom.chord_slope(q2.value, q1.value) * q2.rate,
-                    boom.chord_slope(q1.value, q2.value) * q1.acceleration +
-                        boom.chord_slope(q2.value, q1.value) * q2.acceleration +
-                        boom.chord_bias_m_s2(q1.rate, q2.rate)};
+    const Moving R8{boom.chord_m({q1.value, q2.value}),
+                    chord_slope(q1.value, q2.value) * q1.rate + chord_slope(q2.value, q1.value) * q2.rate,
+                    chord_slope(q1.value, q2.value) * q1.acceleration +
+                        chord_slope(q2.value, q1.value) * q2.acceleration + boom.chord_bias_m_s2({q1.rate, q2.rate})};
     // dR8/dq is linear in q, so its time derivatives are the same function of q' and q''.
     const auto slope = [&](const Moving& q, const Moving& other) {
-        return Moving{boom.chord_slope(q.value, other.value), boom.chord_slope(q.rate, other.rate),
-                      boom.chord_slope(q.acceleration, other.acceleration)};
+        return Moving{chord_slope(q.value, other.value), chord_slope(q.rate, other.rate),
+                      chord_slope(q.acceleration, other.acceleration)};
     };
     const Moving R8_1 = slope(q1, q2);
     const Moving R8_2 = slope(q2, q1);
-    const double R8_same = boom.chord_slope(1.0, 0.0);   // d2R8/dq1^2 = d2R8/dq2^2
-    const double R8_cross = boom.chord_slope(0.0, 1.0);  // d2R8/dq1dq2
+    const double R8_same = chord_slope(1.0, 0.0);   // d2R8/dq1^2 = d2R8/dq2^2
+    const double R8_cross = chord_slope(0.0, 1.0);  // d2R8/dq1dq2
 
     const double s2 = std::sin(phi2.value);
     const double c2 = std::cos(phi2.value);
@@ -326,14 +326,14 @@ void crane_jacobian(const CraneDynamics& crane, const CraneState& state, double 
     B[R9_m][R9_m] -= K_L;
     B[R9_m][line_column] = K_L > 0.0 ? -1.0 : 0.0;
 
-    B[q1_m][q1_m] -= 2.0 * boom.bending_stiffness_N_m;
-    B[q1_m][q2_m] += boom.bending_stiffness_N_m;
-    B[q2_m][q1_m] += boom.bending_stiffness_N_m;
-    B[q2_m][q2_m] -= 2.0 * boom.bending_stiffness_N_m;
-    B[q1_m][n + q1_m] -= 5.0 * boom.damping_N_s_m;
-    B[q1_m][n + q2_m] += 4.0 * boom.damping_N_s_m;
-    B[q2_m][n + q1_m] += 4.0 * boom.damping_N_s_m;
-    B[q2_m][n + q2_m] -= 5.0 * boom.damping_N_s_m;
+    for (int j = 0; j < 2; ++j) {
+        const Eigen::Vector2d bending = boom.bending_force_N(Eigen::Vector2d::Unit(j));
+        const Eigen::Vector2d damping = boom.damping_force_N(Eigen::Vector2d::Unit(j));
+        for (int i = 0; i < 2; ++i) {
+            B[q1_m + i][q1_m + j] += bending[i];
+            B[q1_m + i][n + q1_m + j] += damping[i];
+        }
+    }
 
     const SoilSlopes soil =
         crane.soil().slopes(state[R1_m], phi2.value, s2, c2, state[velocity_offset + R1_m], phi2.rate);

@@ -31,6 +31,10 @@ struct StructureParameters {
 
     /// L_B, length of one of the three links.
     [[nodiscard]] double link_length_m() const noexcept { return boom_length_m / 3.0; }
+    /// E I = K_B L_B / 3, N m^2.
+    [[nodiscard]] double bending_stiffness_N_m2() const noexcept {
+        return boom_joint_stiffness_N_m * link_length_m() / 3.0;
+    }
 };
 
 /// Elastic half-space under the tracks (thesis 3.1.3).

@@ -26,17 +26,38 @@ inline constexpr int piston_index = 2 * coordinate_count;  ///< X_p in m, positi
 inline constexpr int state_count = piston_index + 1;
 using CraneState = Eigen::Matrix<double, state_count, 1>;
 
-[[nodiscard]] inline auto coordinates_of(const CraneState& state) {
-    return state.head<coordinate_count>();
+/// The same for a boom with `boom_count` coordinates of its own, which then stand where q1 and q2 do: R1, phi2, R9, the
+/// boom's, phi6, phi9. With two it is the layout above.
+template <int boom_count>
+struct CraneLayout {
+    static constexpr int boom_index = q1_m;  ///< of the boom's first
+    static constexpr int phi6_index = boom_index + boom_count;
+    static constexpr int phi9_index = phi6_index + 1;
+    static constexpr int coordinate_count = phi9_index + 1;
+    static constexpr int velocity_offset = coordinate_count;
+    static constexpr int piston_index = 2 * coordinate_count;
+    static constexpr int state_count = piston_index + 1;
+    using Coordinates = Eigen::Matrix<double, coordinate_count, 1>;
+    using MassMatrix = Eigen::Matrix<double, coordinate_count, coordinate_count>;
+    using State = Eigen::Matrix<double, state_count, 1>;
+};
+static_assert(CraneLayout<2>::phi6_index == phi6_rad && CraneLayout<2>::phi9_index == phi9_rad);
+
+template <int count>
+[[nodiscard]] auto coordinates_of(const Eigen::Matrix<double, count, 1>& state) {
+    return state.template head<count / 2>();
 }
-[[nodiscard]] inline auto coordinates_of(CraneState& state) {
-    return state.head<coordinate_count>();
+template <int count>
+[[nodiscard]] auto coordinates_of(Eigen::Matrix<double, count, 1>& state) {
+    return state.template head<count / 2>();
 }
-[[nodiscard]] inline auto velocities_of(const CraneState& state) {
-    return state.segment<coordinate_count>(velocity_offset);
+template <int count>
+[[nodiscard]] auto velocities_of(const Eigen::Matrix<double, count, 1>& state) {
+    return state.template segment<count / 2>(count / 2);
 }
-[[nodiscard]] inline auto velocities_of(CraneState& state) {
-    return state.segment<coordinate_count>(velocity_offset);
+template <int count>
+[[nodiscard]] auto velocities_of(Eigen::Matrix<double, count, 1>& state) {
+    return state.template segment<count / 2>(count / 2);
 }
 
 }  // namespace steadyboom::plant

@@ -15,15 +15,18 @@ namespace {
 // against rounding.
 constexpr double difference_step = 1e-6;
 
-MassMatrix force_gradient(const CraneDynamics& crane, const Coordinates& p) {
-    MassMatrix gradient;
-    for (int i = 0; i < coordinate_count; ++i) {
-        Coordinates above = p;
-        Coordinates below = p;
+template <class Boom>
+typename CraneDynamicsOf<Boom>::MassMatrix force_gradient(const CraneDynamicsOf<Boom>& crane,
+                                                          const typename CraneDynamicsOf<Boom>::Coordinates& p) {
+    using Vector = typename CraneDynamicsOf<Boom>::Coordinates;
+    typename CraneDynamicsOf<Boom>::MassMatrix gradient;
+    for (int i = 0; i < CraneDynamicsOf<Boom>::Layout::coordinate_count; ++i) {
+        Vector above = p;
+        Vector below = p;
         above[i] += difference_step;
         below[i] -= difference_step;
-        gradient.col(i) = (crane.generalized_force(above, Coordinates::Zero(), 0.0) -
-                           crane.generalized_force(below, Coordinates::Zero(), 0.0)) /
+        gradient.col(i) = (crane.generalized_force(above, Vector::Zero(), 0.0) -
+                           crane.generalized_force(below, Vector::Zero(), 0.0)) /
                           (2.0 * difference_step);
     }
     return gradient;
@@ -31,38 +34,44 @@ MassMatrix force_gradient(const CraneDynamics& crane, const Coordinates& p) {
 
 }  // namespace
 
-MassMatrix stiffness_matrix(const CraneDynamics& crane, const Coordinates& coordinates) {
-    const MassMatrix gradient = force_gradient(crane, coordinates);
+template <class Boom>
+typename CraneDynamicsOf<Boom>::MassMatrix stiffness_matrix(
+    const CraneDynamicsOf<Boom>& crane, const typename CraneDynamicsOf<Boom>::Coordinates& coordinates) {
+    const typename CraneDynamicsOf<Boom>::MassMatrix gradient = force_gradient(crane, coordinates);
     return -0.5 * (gradient + gradient.transpose());
 }
 
-Equilibrium find_equilibrium(const CraneDynamics& crane) {
+template <class Boom>
+EquilibriumOf<Boom> find_equilibrium(const CraneDynamicsOf<Boom>& crane) {
+    using Crane = CraneDynamicsOf<Boom>;
+    using Vector = typename Crane::Coordinates;
+    constexpr int phi6 = Crane::Layout::phi6_index;
     constexpr int max_iterations = 200;
     constexpr double converged = 1e-12;
     // Where the ropes are stiff, rounding of their lengths keeps the forces from balancing any better.
     constexpr double acceptable = 1e-9;
     const StructureParameters& structure = crane.parameters().structure;
-    const double weight_N = (structure.track_mass_kg + structure.car_body_mass_kg + 3.0 * structure.boom_link_mass_kg +
-                             structure.load_mass_kg) *
-                            gravity_m_s2;
-    const auto residual_of = [&](const Coordinates& p) {
-        return crane.generalized_force(p, Coordinates::Zero(), 0.0).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() /
+    const double weight_N =
+        (structure.track_mass_kg + structure.car_body_mass_kg + crane.boom().mass_kg() + structure.load_mass_kg) *
+        gravity_m_s2;
+    const auto residual_of = [&](const Vector& p) {
+        return crane.generalized_force(p, Vector::Zero(), 0.0).cwiseAbs().template maxCoeff<Eigen::PropagateNaN>() /
                weight_N;
     };
 
     // From hanging weights and springs alone: ropes already taut and tracks already bearing, so that no gradient is
     // flat.
-    Coordinates p = Coordinates::Zero();
+    Vector p = Vector::Zero();
     p[R1_m] = -weight_N / crane.soil().coefficients(1.0).vertical_stiffness_N_m;
     p[R9_m] = crane.parameters().ropes.load_line_length_m +
               structure.load_mass_kg * gravity_m_s2 / crane.parameters().ropes.load_line_stiffness_N_m;
-    p[phi6_rad] = structure.boom_angle_rad - 1e-3;
+    p[phi6] = structure.boom_angle_rad - 1e-3;
 
     double residual = residual_of(p);
     int iteration = 0;
     for (; iteration < max_iterations && residual > converged; ++iteration) {
-        const Coordinates force = crane.generalized_force(p, Coordinates::Zero(), 0.0);
-        const Coordinates step = force_gradient(crane, p).fullPivLu().solve(-force);
+        const Vector force = crane.generalized_force(p, Vector::Zero(), 0.0);
+        const Vector step = force_gradient(crane, p).fullPivLu().solve(-force);
         if (!step.allFinite()) {
             break;
         }
@@ -80,13 +89,13 @@ Equilibrium find_equilibrium(const CraneDynamics& crane) {
         residual = tried;
     }
 
-    CraneState state = CraneState::Zero();
+    typename Crane::State state = Crane::State::Zero();
     coordinates_of(state) = p;
     const CraneOutputs outputs = crane.outputs(state);
     const auto fail = [&](const char* why) {
         std::ostringstream text;
         text << "the crane cannot stand: " << why << " (residual " << residual << " of the weight after " << iteration
-             << " Newton steps, boom at " << p[phi6_rad] * 180.0 / std::numbers::pi
+             << " Newton steps, boom at " << p[phi6] * 180.0 / std::numbers::pi
              << " deg); check masses, boom angle, pendent stiffness and soil";
         throw EquilibriumError(text.str());
     };
@@ -99,10 +108,10 @@ Equilibrium find_equilibrium(const CraneDynamics& crane) {
     if (outputs.load_line_tension_N <= 0.0) {
         fail("the load line is slack at rest");
     }
-    if (outputs.contact_fraction <= 0.0 || p[phi6_rad] <= 0.0 || p[phi6_rad] >= std::numbers::pi / 2.0) {
+    if (outputs.contact_fraction <= 0.0 || p[phi6] <= 0.0 || p[phi6] >= std::numbers::pi / 2.0) {
         fail("its tracks lift off or its boom leaves 0 to 90 deg");
     }
-    if (Eigen::LDLT<MassMatrix>(stiffness_matrix(crane, p)).vectorD().minCoeff() <= 0.0) {
+    if (Eigen::LDLT<typename Crane::MassMatrix>(stiffness_matrix(crane, p)).vectorD().minCoeff() <= 0.0) {
         fail("the equilibrium is unstable, the crane would tip");
     }
     return {.state = state,
@@ -111,5 +120,12 @@ Equilibrium find_equilibrium(const CraneDynamics& crane) {
             .residual = residual,
             .iterations = iteration};
 }
+
+template EquilibriumOf<LinkBoom> find_equilibrium(const CraneDynamicsOf<LinkBoom>&);
+template CraneDynamicsOf<LinkBoom>::MassMatrix stiffness_matrix(const CraneDynamicsOf<LinkBoom>&,
+                                                                const CraneDynamicsOf<LinkBoom>::Coordinates&);
+template EquilibriumOf<BeamBoom> find_equilibrium(const CraneDynamicsOf<BeamBoom>&);
+template CraneDynamicsOf<BeamBoom>::MassMatrix stiffness_matrix(const CraneDynamicsOf<BeamBoom>&,
+                                                                const CraneDynamicsOf<BeamBoom>::Coordinates&);
 
 }  // namespace steadyboom::plant

@@ -2,22 +2,28 @@
 
 namespace steadyboom::plant {
 
-SensorVector ideal_sensors(const CraneDynamics& crane, const CraneState& state, double spool_opening_m) noexcept {
-    const StructureParameters& s = crane.parameters().structure;
+template <class Boom>
+SensorVector ideal_sensors(const CraneDynamicsOf<Boom>& crane, const StateOf<Boom>& state,
+                           double spool_opening_m) noexcept {
+    using Layout = typename CraneDynamicsOf<Boom>::Layout;
     const CraneOutputs outputs = crane.outputs(state);
-    const double strain_per_m = 9.0 * s.boom_outer_chord_m / (s.link_length_m() * s.link_length_m());
+    const Eigen::Vector2d strain =
+        crane.boom().thirds_strain(state.template segment<Boom::coordinate_count>(Layout::boom_index));
     SensorVector y;
-    y[strain_lower_microstrain] = 1e6 * strain_per_m * state[q1_m];
-    y[strain_upper_microstrain] = 1e6 * strain_per_m * state[q2_m];
-    y[boom_angle_rad] = state[phi6_rad];
+    y[strain_lower_microstrain] = 1e6 * strain[0];
+    y[strain_upper_microstrain] = 1e6 * strain[1];
+    y[boom_angle_rad] = state[Layout::phi6_index];
     y[line_tension_N] = outputs.load_line_tension_N;
-    y[line_angle_rad] = state[phi9_rad];
+    y[line_angle_rad] = state[Layout::phi9_index];
     y[line_length_m] = crane.parameters().ropes.load_line_length_m;
-    y[piston_m] = state[piston_index];
+    y[piston_m] = state[Layout::piston_index];
     y[spool_m] = spool_opening_m;
     y[load_pressure_Pa] = outputs.load_pressure_Pa;
     return y;
 }
+
+template SensorVector ideal_sensors(const CraneDynamicsOf<LinkBoom>&, const StateOf<LinkBoom>&, double) noexcept;
+template SensorVector ideal_sensors(const CraneDynamicsOf<BeamBoom>&, const StateOf<BeamBoom>&, double) noexcept;
 
 SensorVector sensor_noise(double spool_travel_m) noexcept {
     SensorVector sigma;

@@ -7,10 +7,11 @@ namespace steadyboom::plant {
 
 /// What ideal sensors read (model page, section 8): no noise, no quantisation, no delay.
 ///
-///     eps_i = 9 R_O q_i / L_B^2,  phi6,  T_L,  phi9,  R9(t0),  X_p,  X_v,  P_L = T_P / A_p
+///     eps_i of the boom at its thirds,  phi6,  T_L,  phi9,  R9(t0),  X_p,  X_v,  P_L = T_P / A_p
 ///
 /// `spool_opening_m` is the spool's true opening. Units are those of the Sensor enum.
-[[nodiscard]] SensorVector ideal_sensors(const CraneDynamics& crane, const CraneState& state,
+template <class Boom>
+[[nodiscard]] SensorVector ideal_sensors(const CraneDynamicsOf<Boom>& crane, const StateOf<Boom>& state,
                                          double spool_opening_m) noexcept;
 
 /// One sigma of realistic noise at 200 Hz, in the units of the Sensor enum (model page, section 8).

@@ -113,7 +113,12 @@ void declare_manoeuvre(TomlSchema& schema, Manoeuvre& manoeuvre) {
 CraneFile load_crane_file(const std::filesystem::path& path) {
     CraneFile file;
     Manoeuvre dropped;
+    std::string boom = "links";
     TomlSchema schema;
+    schema.text(
+        "boom", boom, [](const std::string& text) { return text == "links"; },
+        "\"links\", the boom that the controller models, or left out; another boom is for the virtual crane's file");
+    schema.optional();
     declare_crane_file(schema, file);
     schema.optional_section("manoeuvre");
     declare_manoeuvre(schema, dropped);

@@ -28,7 +28,9 @@ struct Manoeuvre {
     [[nodiscard]] double brake_rate_m_s() const noexcept;
 };
 
-/// Reads and checks a crane file; a section [manoeuvre] may be there, is checked and dropped. Throws ConfigError.
+/// Reads and checks a crane file; a section [manoeuvre] may be there, is checked and dropped. So is `boom`, which must
+/// be "links": the controller models no other, and a file of another crane is no mistake to pass over. Throws
+/// ConfigError.
 [[nodiscard]] CraneFile load_crane_file(const std::filesystem::path& path);
 
 /// A file that load_crane_file reads back bit for bit, if `file` came from one or from apply_mismatch.

@@ -196,6 +196,10 @@ void TomlSchema::text(std::string key, std::string& variable, std::function<bool
     add(std::move(key), Text{&variable, std::move(accepts)}, std::move(allowed));
 }
 
+void TomlSchema::optional() {
+    keys_.back().required = false;
+}
+
 void TomlSchema::rule(std::function<bool()> holds, std::string requirement) {
     keys_.back().rules.push_back({std::move(holds), std::move(requirement)});
 }
@@ -307,6 +311,9 @@ void TomlSchema::read_key(const Document& document, Key& key) {
         fail(1, "[" + section.name + "]: section is missing");
     }
     const toml::node* node = table->get(key.name);
+    if (node == nullptr && !key.required) {
+        return;
+    }
     if (node == nullptr) {
         fail(section.name.empty() ? 1 : line_of(*table), full_name(key) + ": is missing; must be " + key.allowed);
     }

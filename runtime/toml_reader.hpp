@@ -46,8 +46,8 @@ struct Range {
 /// The keys of one kind of file, each bound to the variable that holds its value. The same list reads a file strictly,
 /// writes it, scales one number of it and takes its fingerprint. Bound variables must outlive the schema.
 ///
-/// Strict: every key is required, every other key or section is an error, an integer is accepted where a number is
-/// asked and nothing else is converted.
+/// Strict: every key is required unless it is declared optional, every other key or section is an error, an integer is
+/// accepted where a number is asked and nothing else is converted.
 class TomlSchema {
   public:
     /// Keys declared after this belong to `[name]`; dots in the name nest. Keys declared before any section stand at
@@ -87,6 +87,9 @@ class TomlSchema {
         };
         add(std::move(key), std::move(binding), {});
     }
+
+    /// The key declared last may be left out. Its variable then keeps its value.
+    void optional();
 
     /// A condition on the key declared last that involves others; `requirement` completes the sentence "must ...".
     /// Checked once all keys are read.
@@ -146,6 +149,7 @@ class TomlSchema {
         Binding binding;
         std::string allowed;  ///< "a number in (0, 300] m"
         std::vector<Rule> rules;
+        bool required = true;
         std::size_t line = 0;  ///< where the value was read; 0 when it was not
     };
     struct Section {

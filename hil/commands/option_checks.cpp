@@ -30,6 +30,21 @@ CLI::Validator between(double least, double most, const std::string& unit) {
                   [least, most](double value) { return value >= least && value <= most; });
 }
 
+void add_boom_option(CLI::App& command, std::optional<BoomKind>& boom) {
+    command
+        .add_option_function<std::string>(
+            "--boom",
+            [&boom](const std::string& name) {
+                boom = name == name_of(BoomKind::beam) ? BoomKind::beam : BoomKind::links;
+            },
+            "Of the true crane, instead of the case's own: links, the thesis's three, or beam, a continuum with three "
+            "bending modes")
+        ->check([](const std::string& text) {
+            const bool good = text == name_of(BoomKind::links) || text == name_of(BoomKind::beam);
+            return good ? std::string() : fmt::format("\"{}\": must be links or beam", text);
+        });
+}
+
 std::string law_names() {
     std::string names;
     for (const controllers::LawKind law : controllers::all_laws) {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
 #include "controllers/law.hpp"
+#include "hil/boom_kind.hpp"
 
 namespace steadyboom::hil {
 
@@ -13,6 +15,9 @@ namespace steadyboom::hil {
 
 /// Accepts a finite number in [least, most].
 [[nodiscard]] CLI::Validator between(double least, double most, const std::string& unit);
+
+/// Option --boom, set over what the case file says.
+void add_boom_option(CLI::App& command, std::optional<BoomKind>& boom);
 
 /// The laws' names, as one text "none, boom-angle, ...".
 [[nodiscard]] std::string law_names();

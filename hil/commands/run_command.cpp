@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 struct RunCommandOptions {
     std::string crane_case;
     std::string law = "joint-deflection";
+    std::optional<BoomKind> boom;
     std::string bus = "loopback";
     double rate_Hz = 200.0;
     std::optional<double> duration_s;
@@ -80,6 +81,7 @@ int run_case(const RunCommandOptions& options) {
                    .rate_Hz = options.rate_Hz,
                    .seed = options.seed,
                    .mismatches = options.mismatches};
+    run.crane_case.boom = options.boom.value_or(run.crane_case.boom);
     run.duration_s = options.duration_s.value_or(run.crane_case.manoeuvre.duration_s);
     const bool several = options.law == "all";
 
@@ -135,6 +137,7 @@ void add_run_command(CLI::App& app, Action& selected) {
         "run", "The product's way: virtual crane, CAN frames, observer, law, limiter, CAN frames, virtual valve");
     command->add_option("CASE", options->crane_case, "case-a, case-b, case-c or the path of a case file")->required();
     command->add_option("--law", options->law, law_names() + " or all")->check(law_name(true))->capture_default_str();
+    add_boom_option(*command, options->boom);
     command
         ->add_option("--bus", options->bus,
                      "loopback: in-process bus in lockstep, faster than real time; or a SocketCAN interface: two "

@@ -17,6 +17,7 @@ namespace {
 struct SimulateOptions {
     std::string crane_case;
     std::string law = "none";
+    std::optional<BoomKind> boom;
     std::optional<double> duration_s;
     std::optional<double> step_s;
     double tolerance = SimulationOptions{}.tolerance;
@@ -47,6 +48,7 @@ int simulate_case(const SimulateOptions& options) {
                                  .step_s = options.step_s,
                                  .tolerance = options.tolerance,
                                  .output_period_s = options.output_period_s};
+    simulation.crane_case.boom = options.boom.value_or(simulation.crane_case.boom);
     simulation.duration_s = options.duration_s.value_or(simulation.crane_case.manoeuvre.duration_s);
     std::string csv = csv_header();
     const RunFigures figures = simulate(simulation, [&](const TruthSample& sample) { append_row(csv, sample); });
@@ -71,6 +73,7 @@ void add_simulate_command(CLI::App& app, Action& selected) {
         "simulate", "The thesis's own way: the law is fed the true state inside the integration, no bus");
     command->add_option("CASE", options->crane_case, "case-a, case-b, case-c or the path of a case file")->required();
     command->add_option("--law", options->law, law_names())->check(law_name())->capture_default_str();
+    add_boom_option(*command, options->boom);
     command->add_option("--duration-s", options->duration_s, "Simulated time; the case's own if not given")
         ->check(positive_up_to(86'400.0, "s"));
     CLI::Option* step =

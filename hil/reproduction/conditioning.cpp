@@ -5,6 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "plant/mass_matrix_solver.hpp"
+
 namespace steadyboom::hil::reproduction {
 
 using plant::Coordinates;

@@ -12,6 +12,7 @@
 #include "hil/simulation.hpp"
 #include "plant/equilibrium.hpp"
 #include "plant/linear_modes.hpp"
+#include "plant/mass_matrix_solver.hpp"
 
 namespace steadyboom::hil {
 
@@ -115,12 +116,10 @@ double model_left_side(const CraneDynamics& crane, const Instant& now, Coordinat
 struct Abbreviations {
     Abbreviations(const CraneDynamics& crane, const Instant& now)
         : s(crane.parameters().structure),
-          R8_m(crane.boom().chord_m(now.p[q1_m], now.p[q2_m])),
-          R8_rate_m_s(crane.boom().chord_slope(now.p[q1_m], now.p[q2_m]) * now.v[q1_m] +
-                      crane.boom().chord_slope(now.p[q2_m], now.p[q1_m]) * now.v[q2_m]),
-          R8_acceleration_m_s2(crane.boom().chord_slope(now.p[q1_m], now.p[q2_m]) * now.a[q1_m] +
-                               crane.boom().chord_slope(now.p[q2_m], now.p[q1_m]) * now.a[q2_m] +
-                               crane.boom().chord_bias_m_s2(now.v[q1_m], now.v[q2_m])),
+          R8_m(crane.boom().chord_m(now.p.segment<2>(q1_m))),
+          R8_rate_m_s(crane.boom().chord_slope(now.p.segment<2>(q1_m)).dot(now.v.segment<2>(q1_m))),
+          R8_acceleration_m_s2(crane.boom().chord_slope(now.p.segment<2>(q1_m)).dot(now.a.segment<2>(q1_m)) +
+                               crane.boom().chord_bias_m_s2(now.v.segment<2>(q1_m))),
           soil(crane.soil().coefficients(1.0)) {}
 
     const StructureParameters& s;
@@ -485,10 +484,10 @@ MisprintRow bending_row(const StandingCrane& a) {
     constexpr double q1 = 0.02, q2 = 0.05, difference_m = 1e-4;
     const StructureParameters& s = a.loaded.crane.structure;
     const double link_m = s.link_length_m();
-    const Boom& boom = a.dynamics.boom();
+    const LinkBoom& boom = a.dynamics.boom();
     const double slope_N =
         keep(row, "energy_slope_N",
-             (boom.bending_energy_J(q1, q2 + difference_m) - boom.bending_energy_J(q1, q2 - difference_m)) /
+             (boom.bending_energy_J({q1, q2 + difference_m}) - boom.bending_energy_J({q1, q2 - difference_m})) /
                  (2.0 * difference_m));
     const double joint_N_m = s.boom_joint_stiffness_N_m * (6.0 * q2 - 3.0 * q1);
     row.calculation = fmt::format(
@@ -502,7 +501,7 @@ MisprintRow bending_row(const StandingCrane& a) {
         mass *= s.boom_link_mass_kg;
         Eigen::Matrix2d stiffness;
         stiffness << 2.0, -1.0, -second_row_factor, 2.0 * second_row_factor;
-        stiffness *= boom.bending_stiffness_N_m;
+        stiffness *= 3.0 * s.boom_joint_stiffness_N_m / (link_m * link_m);
         const Eigen::Vector2cd values = (mass.inverse() * stiffness).eval().eigenvalues();
         return std::sqrt(values.real().minCoeff()) / (2.0 * pi);
     };

@@ -66,6 +66,20 @@ TEST_F(CaseLookup, TakesAPathAndComesBackBitForBit) {
     }
 }
 
+TEST_F(CaseLookup, BoomIsTheLinksUnlessTheFileSaysBeam) {
+    Case written = load_case("case-a");
+    EXPECT_EQ(written.boom, BoomKind::links);
+    EXPECT_EQ(load_case("case-b").boom, BoomKind::links) << "and says nothing of it";
+    written.boom = BoomKind::beam;
+    std::ofstream("beam.toml") << to_toml(written);
+    const Case read = load_case("beam.toml");
+    EXPECT_EQ(read.boom, BoomKind::beam);
+    EXPECT_EQ(runtime::crane_hash(read.crane), runtime::crane_hash(load_case("case-a").crane))
+        << "the parameters that the controller models are the same";
+    std::ofstream("tube.toml") << "boom = \"tube\"\n" << runtime::to_toml(written) << "[manoeuvre]\n";
+    EXPECT_EQ(error("tube.toml"), "tube.toml:1: boom = \"tube\": must be \"links\" or \"beam\"");
+}
+
 TEST_F(CaseLookup, PrefersTheShippedCaseToAFileOfItsName) {
     std::ofstream("case-a") << "garbage";
     EXPECT_EQ(load_case("case-a").name, "case-a");

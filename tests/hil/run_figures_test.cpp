@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hil/true_crane.hpp"
 #include "support/thesis_cranes.hpp"
 
 namespace steadyboom::hil {
@@ -22,7 +23,7 @@ constexpr int samples_per_s = 2000;
 /// Trajectories made by hand about the equilibrium of case A.
 class Figures : public testing::Test {
   protected:
-    Figures() : crane(test_support::thesis_crane('A')), equilibrium(find_equilibrium(crane)) {}
+    Figures() : crane(true_crane.dynamics()), equilibrium(true_crane.equilibrium()) {}
 
     [[nodiscard]] TruthSample at_rest(double t_s) const {
         return {.t_s = t_s,
@@ -33,7 +34,7 @@ class Figures : public testing::Test {
 
     /// Samples from -1 s to 11 s; `shape` changes each.
     [[nodiscard]] RunFigures of(const std::function<void(TruthSample&)>& shape) const {
-        FigureAccumulator figures(crane, equilibrium, duration_s);
+        FigureAccumulator figures(equilibrium.state, duration_s);
         for (int i = -samples_per_s; i <= 11 * samples_per_s; ++i) {
             TruthSample sample = at_rest(static_cast<double>(i) / samples_per_s);
             shape(sample);
@@ -42,8 +43,9 @@ class Figures : public testing::Test {
         return figures.figures();
     }
 
-    CraneDynamics crane;
-    Equilibrium equilibrium;
+    TrueCrane<LinkBoom> true_crane{test_support::thesis_crane('A')};
+    const CraneDynamics& crane;
+    const Equilibrium& equilibrium;
 };
 
 struct Tracked {
@@ -148,15 +150,16 @@ TEST_F(Figures, SlackSharesAreOfTheWholeTime) {
 TEST_F(Figures, ResidualEnergyIsTheMeanOfTheLastSecond) {
     const double mass_kg = crane.mass_matrix(coordinates_of(equilibrium.state))(R1_m, R1_m);
     constexpr double top_m_s = 0.02;
-    const RunFigures figures = of([](TruthSample& sample) {
+    const RunFigures figures = of([&](TruthSample& sample) {
         sample.state[velocity_offset + R1_m] = sample.t_s <= 9.0 ? 3.0 : top_m_s * (sample.t_s - 9.0);
+        sample = true_crane.sample(sample.state, 0.0, sample.t_s);
     });
     const double expected_J = mass_kg * top_m_s * top_m_s / 6.0;
     EXPECT_NEAR(figures.residual_energy_J, expected_J, 1e-3 * expected_J);
 }
 
 TEST_F(Figures, SamplesCountByTheTimeTheyStandFor) {
-    FigureAccumulator figures(crane, equilibrium, duration_s);
+    FigureAccumulator figures(equilibrium.state, duration_s);
     for (const auto& [t_s, deviation_m] : {std::pair{0.0, 0.0}, {5.0, 0.0}, {6.0, 0.1}, {10.0, 0.2}}) {
         TruthSample sample = at_rest(t_s);
         sample.state[q1_m] += deviation_m;
@@ -168,7 +171,7 @@ TEST_F(Figures, SamplesCountByTheTimeTheyStandFor) {
 }
 
 TEST_F(Figures, RunWithoutSamplesHasNone) {
-    const RunFigures figures = FigureAccumulator(crane, equilibrium, duration_s).figures();
+    const RunFigures figures = FigureAccumulator(equilibrium.state, duration_s).figures();
     for (const FigureRow& row : figure_rows) {
         EXPECT_EQ(figures.*row.value, 0.0) << row.key;
     }
@@ -176,7 +179,7 @@ TEST_F(Figures, RunWithoutSamplesHasNone) {
 
 TEST_F(Figures, DurationThatIsNotPositiveIsRefused) {
     for (const double bad_s : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
-        EXPECT_THROW(FigureAccumulator(crane, equilibrium, bad_s), std::invalid_argument) << bad_s;
+        EXPECT_THROW(FigureAccumulator(equilibrium.state, bad_s), std::invalid_argument) << bad_s;
     }
 }
 
@@ -198,7 +201,7 @@ TEST_F(Figures, TruthSampleTellsWhatTheModelTells) {
     CraneState state = equilibrium.state;
     state[phi6_rad] -= 1e-3;
     state[R9_m] += 2e-3;
-    const TruthSample sample = sample_truth(crane, state, 2e-3, equilibrium.pendent_tension_N, 1.5);
+    const TruthSample sample = true_crane.sample(state, 2e-3, 1.5);
     const CraneOutputs outputs = crane.outputs(state);
     EXPECT_EQ(sample.t_s, 1.5);
     EXPECT_EQ(sample.state, state);

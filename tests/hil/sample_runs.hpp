@@ -7,7 +7,7 @@
 
 #include "controllers/interlock.hpp"
 #include "hil/run_result.hpp"
-#include "plant/equilibrium.hpp"
+#include "hil/true_crane.hpp"
 #include "plant/valve_command.hpp"
 
 namespace steadyboom::hil {
@@ -27,16 +27,15 @@ inline RunResult sample_run(controllers::LawKind law, double peak_R1_m) {
     run.figures.residual_energy_J = 1e6 * peak_R1_m;
     run.figures.peak_power_W = law == controllers::LawKind::none ? 0.0 : 17'000.0;
 
-    const plant::CraneDynamics crane(run.options.crane_case.crane);
-    const plant::Equilibrium rest = plant::find_equilibrium(crane);
+    const TrueCrane<plant::LinkBoom> crane(run.options.crane_case.crane);
     for (int k = 0; k <= 1200; ++k) {
         RunTick tick;
         const double t_s = 0.005 * k - RunResult::standing_s;
-        plant::CraneState state = rest.state;
+        plant::CraneState state = crane.equilibrium().state;
         if (t_s > 0.0) {
             state[plant::R1_m] += peak_R1_m * std::sin(9.0 * t_s);
         }
-        tick.truth = sample_truth(crane, state, 1e-3 * std::sin(7.0 * t_s), rest.pendent_tension_N, t_s);
+        tick.truth = crane.sample(state, 1e-3 * std::sin(7.0 * t_s), t_s);
         tick.record.tick = static_cast<std::uint64_t>(k);
         for (std::size_t i = 0; i < plant::state_count; ++i) {
             tick.record.estimate[i] = state[static_cast<Eigen::Index>(i)] + 1e-5;

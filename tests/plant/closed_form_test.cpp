@@ -192,15 +192,15 @@ TEST(HeldBoom, BendsInTwoModesUnderItsThrust) {
     held(-1.0, 0.25 * link_kg, 9.0 * K_N_m, 9.0 * C_N_s_m);
 }
 
-TEST(Boom, ChordShortensAsThreeLinksOfFixedLength) {
-    const Boom boom(thesis_crane('A').structure);
+TEST(LinkBoom, ChordShortensAsThreeLinksOfFixedLength) {
+    const LinkBoom boom(thesis_crane('A').structure);
     const double L_B = 45.7 / 3.0;
     const double q1 = 0.3;
     const double q2 = -0.2;
     const double exact_m =
         std::sqrt(L_B * L_B - q1 * q1) + std::sqrt(L_B * L_B - (q2 - q1) * (q2 - q1)) + std::sqrt(L_B * L_B - q2 * q2);
-    EXPECT_EQ(boom.chord_m(0.0, 0.0), 45.7);
-    EXPECT_NEAR(45.7 - boom.chord_m(q1, q2), 45.7 - exact_m, 1e-3 * (45.7 - exact_m));
+    EXPECT_EQ(boom.chord_m({0.0, 0.0}), 45.7);
+    EXPECT_NEAR(45.7 - boom.chord_m({q1, q2}), 45.7 - exact_m, 1e-3 * (45.7 - exact_m));
 }
 
 TEST(FreeCrane, EveryMassFallsWithGravityWhenNothingHolds) {

@@ -12,7 +12,6 @@
 namespace steadyboom::plant {
 namespace {
 
-using Contact = RandomStates::Contact;
 using test_support::thesis_crane;
 
 constexpr int states = 100;

@@ -9,9 +9,10 @@
 namespace steadyboom::plant {
 
 /// The manoeuvre's start: at rest but for the load line's paying-out rate after a fall through `load_drop_m`.
-[[nodiscard]] inline CraneState after_load_drop(const CraneDynamics& crane, double load_drop_m) {
-    CraneState start = find_equilibrium(crane).state;
-    start[velocity_offset + R9_m] = std::sqrt(2.0 * gravity_m_s2 * load_drop_m);
+template <class Boom>
+[[nodiscard]] StateOf<Boom> after_load_drop(const CraneDynamicsOf<Boom>& crane, double load_drop_m) {
+    StateOf<Boom> start = find_equilibrium(crane).state;
+    start[CraneDynamicsOf<Boom>::Layout::velocity_offset + R9_m] = std::sqrt(2.0 * gravity_m_s2 * load_drop_m);
     return start;
 }
 
