@@ -6,10 +6,8 @@
 namespace steadyboom::drivers {
 namespace {
 
-constexpr std::uint8_t standard_full_raw = 250;      // 100 % in steps of 0.4 %
-constexpr std::uint16_t extended_full_raw = 64'000;  // 100 % in steps of 0.0015625 %
-constexpr std::uint8_t flow_offset_raw = 125;        // 0 % in steps of 1 %
-constexpr std::uint8_t flow_highest_raw = 250;       // 125 %
+constexpr std::uint8_t flow_offset_raw = 125;   // 0 % in steps of 1 %
+constexpr std::uint8_t flow_highest_raw = 250;  // 125 %
 constexpr std::uint8_t reserved = 0xFF;
 
 constexpr std::uint8_t resolution_bits = 0b11;
@@ -50,11 +48,11 @@ void write_command(const AuxiliaryValveCommand& command, FlowResolution resoluti
     const double share = cut(command.flow, 0.0, 1.0);
     frame.length = auxiliary_valve_bytes;
     frame.data.fill(reserved);
-    frame.data[0] = static_cast<std::uint8_t>(std::lround(share * standard_full_raw));
+    frame.data[0] = static_cast<std::uint8_t>(std::lround(share * standard_flow_steps));
     frame.data[1] = static_cast<std::uint8_t>(reserved & ~resolution_bits);
     frame.data[2] = state_byte(command.state, command.fail_safe);
     if (resolution == FlowResolution::extended) {
-        const auto extended_raw = static_cast<std::uint16_t>(std::lround(share * extended_full_raw));
+        const auto extended_raw = static_cast<std::uint16_t>(std::lround(share * extended_flow_steps));
         frame.data[1] |= extended_valid;
         frame.data[3] = static_cast<std::uint8_t>(extended_raw);
         frame.data[4] = static_cast<std::uint8_t>(extended_raw >> 8U);
@@ -68,9 +66,9 @@ std::optional<AuxiliaryValveCommand> read_command(const CanFrame& frame) noexcep
     AuxiliaryValveCommand command;
     const unsigned extended_raw = frame.data[3] | frame.data[4] << 8U;
     if ((frame.data[1] & resolution_bits) == extended_valid) {
-        command.flow = static_cast<double>(extended_raw) / extended_full_raw;
+        command.flow = static_cast<double>(extended_raw) / extended_flow_steps;
     } else {
-        command.flow = static_cast<double>(frame.data[0]) / standard_full_raw;
+        command.flow = static_cast<double>(frame.data[0]) / standard_flow_steps;
     }
     const auto state_raw = frame.data[2] & 0x0FU;
     const bool known = state_raw <= static_cast<unsigned>(PortState::floating) ||

@@ -42,6 +42,9 @@ enum class FlowLimit : std::uint8_t {
     not_available = 7,
 };
 
+inline constexpr std::uint16_t standard_flow_steps = 250;     ///< in 100 %, 0.4 % each
+inline constexpr std::uint16_t extended_flow_steps = 64'000;  ///< in 100 %, 0.0015625 % each
+
 enum class FlowResolution : std::uint8_t {
     standard,  ///< 0.4 %
     extended,  ///< 0.0015625 %, and the standard value beside it

@@ -40,8 +40,4 @@ void Cia408Driver::restarted() noexcept {
     control_ = {};
 }
 
-std::unique_ptr<ValveDriver> make_valve_driver(const DeviceTable& table) {
-    return std::make_unique<Cia408Driver>(table);
-}
-
 }  // namespace steadyboom::drivers

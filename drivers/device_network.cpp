@@ -27,6 +27,9 @@ constexpr std::uint8_t event_timer = 5;
 }  // namespace
 
 DeviceNetwork::DeviceNetwork(const NetworkConfig& config) : table_(config) {
+    if (table_.config(Device::servo_valve).profile == ValveProfile::j1939) {
+        j1939_.emplace(table_);
+    }
     for (const auto pdo : {Pdo::valve_command, Pdo::safety_outputs}) {
         if (table_.row(pdo).protection == Protection::e2e) {
             receivers_[index_of(pdo)].emplace(table_.row(pdo).data_id);
@@ -258,8 +261,8 @@ void DeviceNetwork::obey_nmt(const CanFrame& frame) noexcept {
 
 void DeviceNetwork::obey_nmt(Device device, NmtCommand command) noexcept {
     auto& node = nodes_[index_of(device)];
-    if (node.state == NodeState::boot_up) {
-        return;  // CiA 301: a node hears nothing before its boot-up message
+    if (node.state == NodeState::boot_up || !table_.config(device).canopen) {
+        return;  // CiA 301: a node hears nothing before its boot-up message; others know no NMT at all
     }
     switch (command) {
         case NmtCommand::start:
@@ -307,11 +310,21 @@ void DeviceNetwork::forget_orders(Device device) noexcept {
 }
 
 void DeviceNetwork::take_valve_order(const CanFrame& frame, std::int64_t now_ns) noexcept {
-    order_.control_word = static_cast<std::uint16_t>(read_raw(table_.row(Signal::valve_control_word), frame));
-    const auto& set_point = table_.row(Signal::valve_set_point);
-    order_.set_point_m =
-        std::clamp(static_cast<double>(read_raw(set_point, frame)) * set_point.scale_unit + set_point.offset_unit,
-                   set_point.lowest_unit, set_point.highest_unit);
+    if (j1939_) {
+        const auto order = j1939_->take(frame);
+        if (!order) {
+            ++status_.rejected_orders;
+            return;
+        }
+        order_.control_word = order->control_word;
+        order_.set_point_m = order->set_point_m;
+    } else {
+        order_.control_word = static_cast<std::uint16_t>(read_raw(table_.row(Signal::valve_control_word), frame));
+        const auto& set_point = table_.row(Signal::valve_set_point);
+        order_.set_point_m =
+            std::clamp(static_cast<double>(read_raw(set_point, frame)) * set_point.scale_unit + set_point.offset_unit,
+                       set_point.lowest_unit, set_point.highest_unit);
+    }
     order_.stamp_ns = now_ns;
     order_.ever = true;
 }
@@ -374,7 +387,9 @@ std::span<const CanFrame> DeviceNetwork::answer_sync(const plant::SensorVector& 
                 write_raw(table_.row(row.status), static_cast<std::int64_t>(sample), frame);
             }
         }
-        if (message.pdo == Pdo::valve_status) {
+        if (message.pdo == Pdo::valve_status && j1939_) {
+            j1939_->report(feedback.status, sensors[plant::spool_m], frame);
+        } else if (message.pdo == Pdo::valve_status) {
             write_raw(table_.row(Signal::valve_status_word), status_word(feedback.status), frame);
         } else if (message.pdo == Pdo::safety_inputs) {
             write_raw(table_.row(Signal::cutoff_open), feedback.cutoff_open ? 1 : 0, frame);

@@ -12,6 +12,7 @@
 #include "drivers/device_table.hpp"
 #include "drivers/emcy.hpp"
 #include "drivers/inverted_twin.hpp"
+#include "drivers/j1939_valve.hpp"
 #include "drivers/protection.hpp"
 #include "drivers/sdo_server.hpp"
 #include "plant/crane_measurement.hpp"
@@ -133,6 +134,7 @@ class DeviceNetwork {
     std::array<bool, message_count> message_silent_{};
     std::array<std::optional<ProtectedReceiver>, pdo_count> receivers_;  ///< of the protected RPDOs
     InvertedTwin twin_;
+    std::optional<J1939Port> j1939_;  ///< of a valve of that profile
     ValveOrder order_;
     bool sync_pending_ = false;
     std::uint8_t sync_counter_ = 0;

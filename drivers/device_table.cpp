@@ -1,5 +1,7 @@
 #include "drivers/device_table.hpp"
 
+#include "drivers/auxiliary_valve.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -255,6 +257,56 @@ void check_signal(Signal signal, const SignalConfig& s) {
     }
 }
 
+/// ISO 11783-7 says where everything lies; a table that says otherwise describes another valve.
+void check_auxiliary_valve(const NetworkConfig& config) {
+    const auto& valve = config[Device::servo_valve];
+    if (valve.canopen) {
+        refuse(key_of(Device::servo_valve, "canopen"), "true", "allowed with profile \"j1939\" is false");
+    }
+    if (valve.protection != Protection::none) {
+        refuse(key_of(Device::servo_valve, "protection"), "e2e", "allowed with profile \"j1939\" is none");
+    }
+    const auto check_message = [&](Pdo pdo, std::uint32_t first_pgn) {
+        const auto& p = config[pdo];
+        const std::uint32_t pgn = p.extended_id >> 8U & 0x3'FFFFU;
+        if (pgn < first_pgn || pgn > first_pgn + 15) {
+            refuse(key_of(pdo, "extended_id"), p.extended_id,
+                   "allowed is one of parameter group " + std::to_string(first_pgn) + " to " +
+                       std::to_string(first_pgn + 15) + " (ISO 11783-7)");
+        }
+        if (p.length_bytes != auxiliary_valve_bytes) {
+            refuse(key_of(pdo, "length_bytes"), p.length_bytes, "allowed with profile \"j1939\" is 8");
+        }
+    };
+    check_message(Pdo::valve_command, auxiliary_valve_command_pgn);
+    check_message(Pdo::valve_status, auxiliary_valve_flow_pgn);
+    for (const auto word : {Signal::valve_control_word, Signal::valve_status_word}) {
+        if (config[word].mapped) {
+            refuse(key_of(word, "mapped"), "true", "allowed with profile \"j1939\" is false");
+        }
+    }
+    const auto lies = [](const SignalConfig& s, RawType type, std::uint8_t byte_offset, double scale) {
+        return s.mapped && s.type == type && s.byte_offset == byte_offset && s.unit == Unit::percent_of_travel &&
+               std::abs(std::abs(s.scale) - scale) < 1.0e-9;
+    };
+    const auto& set_point = config[Signal::valve_set_point];
+    const bool standard = lies(set_point, RawType::u8, 0, 100.0 / standard_flow_steps);
+    const bool extended = lies(set_point, RawType::u16, 3, 100.0 / extended_flow_steps);
+    if (!(standard || extended) || set_point.offset != 0.0) {
+        refuse(key_of(Signal::valve_set_point, "scale"), set_point.scale,
+               "allowed with profile \"j1939\" is type \"u8\" at byte 0 with scale 0.4 or -0.4, or \"u16\" at byte 3 "
+               "with scale 0.0015625 or -0.0015625, unit \"%\", offset 0");
+    }
+    const auto& spool = config[Signal::spool];
+    if (!lies(spool, RawType::u8, 0, 1.0) || spool.offset != -125.0 * spool.scale ||
+        std::signbit(spool.scale) != std::signbit(set_point.scale)) {
+        refuse(
+            key_of(Signal::spool, "scale"), spool.scale,
+            "allowed with profile \"j1939\" is type \"u8\" at byte 0, unit \"%\", scale 1 and offset -125, or -1 and "
+            "125 if the set-point's scale is negative");
+    }
+}
+
 void check_signals(const NetworkConfig& config) {
     std::array<std::array<std::optional<Signal>, 64>, pdo_count> owner{};
     for (std::size_t i = 0; i < signal_count; ++i) {
@@ -263,7 +315,9 @@ void check_signals(const NetworkConfig& config) {
         if (!s.mapped) {
             const bool optional = meaning_of(signal).sensor != plant::sensor_count ||
                                   signal == Signal::strain_lower_status || signal == Signal::strain_upper_status ||
-                                  signal == Signal::line_tension_status;
+                                  signal == Signal::line_tension_status ||
+                                  (config[Device::servo_valve].profile == ValveProfile::j1939 &&
+                                   (signal == Signal::valve_control_word || signal == Signal::valve_status_word));
             if (!optional) {
                 refuse(key_of(signal, "mapped"), "false", "the controller cannot do without this signal");
             }
@@ -315,6 +369,9 @@ const NetworkConfig& checked(const NetworkConfig& config) {
     check_devices(config);
     check_pdos(config);
     check_signals(config);
+    if (config[Device::servo_valve].profile == ValveProfile::j1939) {
+        check_auxiliary_valve(config);
+    }
     return config;
 }
 

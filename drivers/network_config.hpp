@@ -73,6 +73,12 @@ template <typename Enum>
 /// Whether a device's PDOs end with a counter and a CRC (drivers/protection.hpp), or it cannot do that.
 enum class Protection : std::uint8_t { none, e2e };
 
+/// How the servo valve is spoken to.
+enum class ValveProfile : std::uint8_t {
+    cia408,  ///< control word, status word
+    j1939,   ///< ISO 11783-7 auxiliary valve command and estimated flow (docs/j1939-valve.md)
+};
+
 /// When a device sends a PDO.
 enum class Transmission : std::uint8_t {
     sync,   ///< transmission type 1: on each SYNC
@@ -100,7 +106,8 @@ enum class Unit : std::uint8_t {
 };
 
 struct DeviceConfig {
-    std::uint8_t node_id = 0;  ///< 1 to 127, all different
+    std::uint8_t node_id = 0;                     ///< 1 to 127, all different
+    ValveProfile profile = ValveProfile::cia408;  ///< of the servo valve only
     Protection protection = Protection::none;
     bool canopen = true;             ///< false: no NMT, SDO or heartbeat, nothing but its PDOs
     bool required = true;            ///< the crane is not ready before it is operational

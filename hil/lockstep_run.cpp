@@ -53,10 +53,13 @@ runtime::ControlTickConfig control_config(const RunOptions& options) {
     // knows no step larger than the travel.
     const double max_slew_m_s =
         std::min(3.0 * actuator.spool_bandwidth_Hz, 0.9 * options.rate_Hz) * actuator.spool_travel_m;
+    drivers::NetworkConfig network = options.network;
+    network.spool_travel_m = actuator.spool_travel_m;
+    network.period_ns = std::llround(1e9 / options.rate_Hz);
     return {.crane = controllers_copy.crane,
             .law = options.law,
             .gains = controllers_copy.gains,
-            .network = {.spool_travel_m = actuator.spool_travel_m, .period_ns = std::llround(1e9 / options.rate_Hz)},
+            .network = network,
             .max_opening_m = actuator.spool_travel_m,
             .max_slew_m_s = max_slew_m_s};
 }

@@ -6,6 +6,7 @@
 
 #include "controllers/law.hpp"
 #include "drivers/can_frame.hpp"
+#include "drivers/network_config.hpp"
 #include "hil/case_file.hpp"
 #include "hil/run_figures.hpp"
 #include "hil/truth_sample.hpp"
@@ -20,6 +21,7 @@ struct RunOptions {
     double rate_Hz = 200.0;
     double duration_s = 10.0;             ///< after the brake event
     std::uint64_t seed = 1;               ///< of the sensor noise
+    drivers::NetworkConfig network;       ///< of the devices; travel and period are the case's and the rate's
     std::vector<std::string> mismatches;  ///< KEY=FACTOR, falsify the controller's copy of the crane
 };
 

@@ -23,11 +23,13 @@ using drivers::Signal;
 using drivers::SignalConfig;
 using drivers::Transmission;
 using drivers::Unit;
+using drivers::ValveProfile;
 
 template <class Value, std::size_t count>
 using Words = std::array<std::pair<std::string_view, Value>, count>;
 
 constexpr Words<Protection, 2> protection_words = {{{"none", Protection::none}, {"e2e", Protection::e2e}}};
+constexpr Words<ValveProfile, 2> profile_words = {{{"cia408", ValveProfile::cia408}, {"j1939", ValveProfile::j1939}}};
 constexpr Words<Transmission, 2> transmission_words = {{{"sync", Transmission::sync}, {"event", Transmission::event}}};
 constexpr Words<ByteOrder, 2> byte_order_words = {
     {{"little", ByteOrder::little_endian}, {"big", ByteOrder::big_endian}}};
@@ -52,6 +54,9 @@ void declare_device(TomlSchema& schema, Device device, DeviceConfig& config) {
     if (device == Device::controller) {
         schema.integer("heartbeat_ms", config.heartbeat_ms, 1, 65'535, "ms");
         return;
+    }
+    if (device == Device::servo_valve) {
+        schema.word<ValveProfile>("profile", config.profile, profile_words);
     }
     schema.word<Protection>("protection", config.protection, protection_words);
     schema.boolean("canopen", config.canopen);
