@@ -51,7 +51,8 @@ int reproduce(const ReproduceOptions& options) {
     const std::vector<Row> rows = judge(runs);
     Appendix appendix;
     if (options.json || !options.out.empty()) {
-        std::cerr << "conditioning ...\n";
+        std::cerr << "booms and conditioning ...\n";
+        appendix.booms = booms_alone(runs.a.options().crane_case.crane.structure);
         for (const ThesisRun* run : {&runs.a, &runs.b, &runs.c}) {
             appendix.conditioning.push_back(conditioning_of(*run));
         }

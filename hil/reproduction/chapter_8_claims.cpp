@@ -35,8 +35,6 @@ double piston_over_soil(const ThesisRun& run) {
     return run.piston_work_J() / run.soil_work_J();
 }
 
-const std::string needs_beam =
-    "The boom as a continuum with bending modes, Patten's model, which is not built yet: needs the beam boom";
 const std::string one_mode =
     "The coordinates would have to share their largest mode in the case that spreads them most";
 
@@ -71,15 +69,22 @@ std::vector<Claim> chapter_8_claims() {
              return {at_least("phi2' in case B, RMS within a second after a quiet half second over it", "",
                               quiet_spell(r.b, phi2_rate_rad_s, 1.0, 8.0, 0.5, 1.0).regain, 1.5, 1.15)};
          }},
-        {"8-06", "8", "24-28", "Histories have shapes like those of Patten's model", "similar", needs_beam, {}},
-        {"8-07",
-         "8",
-         "36",
-         "A point of the boom deflects as in Patten's model, in size and frequency",
-         "similar",
-         needs_beam,
-         {}},
-        {"8-08", "8", "29, 30", "The three-link chord shortens less than Patten's", "less", needs_beam, {}},
+        {"8-06", "8", "24-28", "Histories have shapes like those of Patten's model", "similar",
+         booms_would_have_to_be_alike,
+         [](const ThesisRuns& r) -> Measures {
+             return {at_least("coordinates whose spectra are alike (likeness of 0.7 and more)", "of 5",
+                              alike_with_both_booms(r), 5.0, 3.0)};
+         }},
+        {"8-07", "8", "36", "A point of the boom deflects as in Patten's model, in size and frequency", "similar",
+         booms_would_have_to_be_alike,
+         [](const ThesisRuns& r) -> Measures {
+             return {same("largest q1, links over beam", peak(r.a, q1_m) / peak(r.a_beam, q1_m)),
+                     same("what dominates q1, links over beam", dominant_Hz(r.a, q1_m) / dominant_Hz(r.a_beam, q1_m))};
+         }},
+        {"8-08", "8", "29, 30", "The three-link chord shortens less than Patten's", "less", "",
+         [](const ThesisRuns& r) -> Measures {
+             return {smaller("range of the chord, links over beam", chord_range_m(r.a) / chord_range_m(r.a_beam))};
+         }},
         {"8-09", "8", "31, 44, 55", "The soil's shear modulus changes the crane's motion a good deal", "greatly",
          "The soil would have to be about as soft as ropes and boom are; its modes lie above theirs",
          [](const ThesisRuns& r) -> Measures {

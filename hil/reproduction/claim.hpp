@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <string>
@@ -12,7 +13,9 @@
 
 namespace steadyboom::hil::reproduction {
 
-enum class Verdict { holds, holds_in_kind, does_not_hold, not_examined };
+enum class Verdict { holds, holds_in_kind, does_not_hold };
+
+inline constexpr std::array all_verdicts{Verdict::holds, Verdict::holds_in_kind, Verdict::does_not_hold};
 
 [[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
 
@@ -56,10 +59,10 @@ struct Measure {
 class Condition {
   public:
     Condition(const char* words) : Condition(std::string(words)) {}
-    Condition(std::string words) : words_([words = std::move(words)](const ThesisRuns&) { return words; }) {}
-    template <typename Words>
-    requires std::is_invocable_r_v<std::string, Words, const ThesisRuns&> Condition(Words words)
-        : words_(std::move(words)) {}
+    Condition(std::string text) : words_([text = std::move(text)](const ThesisRuns&) { return text; }) {}
+    template <typename Text>
+    requires std::is_invocable_r_v<std::string, Text, const ThesisRuns&> Condition(Text text)
+        : words_(std::move(text)) {}
 
     [[nodiscard]] std::string words(const ThesisRuns& runs) const { return words_(runs); }
 
@@ -73,6 +76,12 @@ class Condition {
 /// would have to be.
 [[nodiscard]] std::string mode_would_have_to_be(const ThesisRun& run, double frequency_Hz);
 
+/// How much stiffer the links are than the beam, in case A: why the two models differ.
+[[nodiscard]] std::string booms_would_have_to_be_alike(const ThesisRuns& runs);
+/// Of how many of R1, phi2, phi6, phi9 and R9 the spectra with links and beam are alike in case A, by a likeness of
+/// 0.7.
+[[nodiscard]] double alike_with_both_booms(const ThesisRuns& runs);
+
 /// A sentence of the thesis about behaviour, and how the runs are asked about it.
 struct Claim {
     std::string id;
@@ -82,7 +91,7 @@ struct Claim {
     std::string thesis;   ///< its value with unit, or its word
     /// What would have to be true for it to hold; shown where it does not hold or holds in kind alone.
     Condition would_hold_if;
-    /// Empty where no run can tell: the claim is then not examined, and `would_hold_if` says what it needs.
+    /// At least one.
     std::function<std::vector<Measure>(const ThesisRuns&)> measures;
 };
 
@@ -93,8 +102,8 @@ struct Claim {
 /// A claim with its answer.
 struct Row {
     std::string id, section, figures, claim, thesis;
-    std::vector<Measure> measures;  ///< empty if not examined
-    Verdict verdict = Verdict::not_examined;
+    std::vector<Measure> measures;
+    Verdict verdict = Verdict::does_not_hold;
     std::string here;           ///< measured values with units
     std::string reason;         ///< which measure decided, where there are several, and its ranges
     std::string would_hold_if;  ///< empty where the claim holds, and perhaps where it does in kind

@@ -8,12 +8,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "plant/pinned_boom.hpp"
+
 namespace steadyboom::hil::reproduction {
 
 namespace {
-
-constexpr std::array all_verdicts{Verdict::holds, Verdict::holds_in_kind, Verdict::does_not_hold,
-                                  Verdict::not_examined};
 
 nlohmann::ordered_json number_or_null(double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
@@ -37,10 +36,10 @@ nlohmann::ordered_json run_json(const ThesisRun& run) {
         figures[std::string(figure.key)] = number_or_null(run.figures().*figure.value);
     }
     nlohmann::ordered_json modes = nlohmann::ordered_json::array();
-    for (const plant::LinearMode& mode : run.modes()) {
+    for (const RunMode& mode : run.modes()) {
         modes.push_back({{"frequency_Hz", mode.frequency_Hz},
                          {"damping_ratio", mode.damping_ratio},
-                         {"dominant_coordinate", plant::coordinate_name(mode.dominant)}});
+                         {"dominant_coordinate", mode.dominant}});
     }
     nlohmann::ordered_json spectra = nlohmann::ordered_json::object();
     for (int i = 0; i < static_cast<int>(Signal::count); ++i) {
@@ -52,6 +51,7 @@ nlohmann::ordered_json run_json(const ThesisRun& run) {
     }
     return {{"run", run.name()},
             {"case", run.options().crane_case.name},
+            {"boom", name_of(run.options().crane_case.boom)},
             {"law", controllers::name_of(run.options().law)},
             {"figures", figures},
             {"soil_work_J", run.soil_work_J()},
@@ -89,6 +89,16 @@ std::string shortened(const std::string& text, std::size_t width) {
 }
 
 }  // namespace
+
+std::vector<BoomAlone> booms_alone(const plant::StructureParameters& structure) {
+    const plant::PinnedBoom boom = plant::pinned_boom(structure);
+    const double pinned_N_m = boom.condensed_to_deflections_N_m.row(0).sum();  // exact for a beam under such forces
+    return {{"three links, deflections eliminated and ends clamped (3.1.1-12)", boom.links_stiffness_N_m.row(0).sum(),
+             boom.links_Hz[0], boom.links_Hz[1]},
+            {"three links, rotations eliminated and ends pinned", pinned_N_m, boom.condensed_links_Hz[0],
+             boom.condensed_links_Hz[1]},
+            {"beam", pinned_N_m, boom.beam_Hz[0], boom.beam_Hz[1]}};
+}
 
 std::string table_of(const std::vector<Row>& rows) {
     std::string text;
@@ -136,6 +146,13 @@ std::string json_of(const std::vector<Row>& rows, const Appendix& appendix, cons
     }
     for (const ThesisRun* run : runs.all()) {
         document["runs"].push_back(run_json(*run));
+    }
+    document["booms"] = nlohmann::ordered_json::array();
+    for (const BoomAlone& row : appendix.booms) {
+        document["booms"].push_back({{"boom", row.boom},
+                                     {"stiffness_N_m", row.stiffness_N_m},
+                                     {"first_frequency_Hz", row.first_Hz},
+                                     {"second_frequency_Hz", row.second_Hz}});
     }
     document["conditioning"] = nlohmann::ordered_json::array();
     for (const Conditioning& row : appendix.conditioning) {

@@ -14,8 +14,19 @@ namespace steadyboom::hil::reproduction {
 /// Rows as a table for a terminal: id, claim, thesis, here, verdict; then how many hold.
 [[nodiscard]] std::string table_of(const std::vector<Row>& rows);
 
+/// One model of case A's boom by itself, ends pinned: plant/pinned_boom.hpp.
+struct BoomAlone {
+    std::string boom;
+    double stiffness_N_m;  ///< equal forces at both thirds that deflect both by 1 m, one of them
+    double first_Hz;
+    double second_Hz;
+};
+/// The links of 3.1.1-12, the links with the rotations eliminated instead, and the beam, in this order.
+[[nodiscard]] std::vector<BoomAlone> booms_alone(const plant::StructureParameters& structure);
+
 /// What stands beside the claims.
 struct Appendix {
+    std::vector<BoomAlone> booms;
     std::vector<Conditioning> conditioning;
     std::vector<MisprintRow> misprints;  ///< empty if left out
     Sensitivity sensitivity;             ///< empty if left out

@@ -7,7 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "hil/true_crane.hpp"
 #include "plant/energy.hpp"
+#include "plant/linear_modes.hpp"
 
 namespace steadyboom::hil::reproduction {
 
@@ -39,8 +41,20 @@ constexpr std::array members{&ThesisRuns::a,
                              &ThesisRuns::c2_doubled,
                              &ThesisRuns::a_soft,
                              &ThesisRuns::b_on_soil_of_a,
-                             &ThesisRuns::b_at_angle_of_a};
+                             &ThesisRuns::b_at_angle_of_a,
+                             &ThesisRuns::a_beam};
 static_assert(sizeof(ThesisRuns) == members.size() * sizeof(ThesisRun), "every run is in the list");
+
+std::vector<RunMode> modes_of(const Case& crane_case) {
+    return with_boom(crane_case.boom, [&]<class Boom>(std::type_identity<Boom>) {
+        const TrueCrane<Boom> crane(crane_case.crane);
+        std::vector<RunMode> modes;
+        for (const plant::LinearMode& mode : plant::linear_modes(crane.dynamics(), crane.equilibrium().state)) {
+            modes.push_back({mode.frequency_Hz, mode.damping_ratio, plant::coordinate_name<Boom>(mode.dominant)});
+        }
+        return modes;
+    });
+}
 
 std::span<const double> part(const ThesisRun& run, Signal signal, double from_s, double to_s) {
     const std::vector<double>& values = run.signal(signal);
@@ -91,24 +105,25 @@ std::string_view name_of(Signal signal) noexcept {
 }
 
 ThesisRun::ThesisRun(std::string name, const SimulationOptions& options) {
-    const plant::CraneDynamics crane(options.crane_case.crane);
-    const plant::Equilibrium rest = plant::find_equilibrium(crane);
     const auto record = std::make_shared<Record>(Record{.name = std::move(name),
                                                         .options = options,
-                                                        .rest = rest,
-                                                        .modes = plant::linear_modes(crane, rest.state),
+                                                        .rest = rest_of(options.crane_case),
+                                                        .modes = modes_of(options.crane_case),
                                                         .figures = {},
                                                         .signals = std::vector<std::vector<double>>(signal_count),
                                                         .spectra = std::vector<Spectrum>(signal_count)});
-    const plant::ResidualEnergy energy(crane, rest.state);
+    const plant::Equilibrium& rest = record->rest;
+    const bool has_links = options.crane_case.boom == BoomKind::links;
+    const plant::CraneDynamics links(options.crane_case.crane);  // soil and joints are told by it
     const plant::StructureParameters& structure = options.crane_case.crane.structure;
     const double link_m = structure.link_length_m();
     const double bending_N_m = 3.0 * structure.boom_joint_stiffness_N_m / (link_m * link_m);
     const Eigen::Matrix2d joint_mass =
-        crane.mass_matrix(plant::coordinates_of(rest.state)).block<2, 2>(plant::q1_m, plant::q1_m);
+        links.mass_matrix(plant::coordinates_of(rest.state)).block<2, 2>(plant::q1_m, plant::q1_m);
 
-    double last_t_s = 0.0;
-    plant::CraneState last_state = rest.state;
+    TruthSample last;
+    last.state = rest.state;
+    last.pendent_tension_N = rest.pendent_tension_N;
     record->figures = simulate(options, [&](const TruthSample& sample) {
         const plant::CraneState deviation = sample.state - rest.state;
         const auto add = [&](Signal signal, double value) {
@@ -126,17 +141,16 @@ ThesisRun::ThesisRun(std::string name, const SimulationOptions& options) {
         const Eigen::Vector2d q = deviation.segment<2>(plant::q1_m);
         const Eigen::Vector2d q_rate = deviation.segment<2>(plant::velocity_offset + plant::q1_m);
         add(Signal::boom_energy_J,
-            bending_N_m * (q.squaredNorm() - q[0] * q[1]) + 0.5 * q_rate.dot(joint_mass * q_rate));
-        add(Signal::crane_energy_J, energy.energy_J(sample.state));
-        const plant::NonConservativePower power = plant::non_conservative_power(crane, sample.state, sample.spool_m);
-        record->soil_work_J += power.soil_W * (sample.t_s - last_t_s);
-        record->piston_work_J += power.piston_W * (sample.t_s - last_t_s);
-        last_t_s = sample.t_s;
-        last_state = sample.state;
+            has_links ? bending_N_m * (q.squaredNorm() - q[0] * q[1]) + 0.5 * q_rate.dot(joint_mass * q_rate) : 0.0);
+        add(Signal::crane_energy_J, sample.residual_energy_J);
+        record->soil_work_J +=
+            plant::non_conservative_power(links, sample.state, sample.spool_m).soil_W * (sample.t_s - last.t_s);
+        const double tension_N = 0.5 * (sample.pendent_tension_N + last.pendent_tension_N) - rest.pendent_tension_N;
+        record->piston_work_J += tension_N * (sample.state[plant::piston_index] - last.state[plant::piston_index]);
+        last = sample;
     });
     record->soil_work_J +=
-        plant::full_contact_energy_J(crane, last_state) - plant::full_contact_energy_J(crane, rest.state);
-    record->piston_work_J -= rest.pendent_tension_N * last_state[plant::piston_index];
+        plant::full_contact_energy_J(links, last.state) - plant::full_contact_energy_J(links, rest.state);
     for (std::size_t i = 0; i < signal_count; ++i) {
         // Without the last sample the record is as long as the run: whole periods of 1/duration stand on a bin.
         record->spectra[i] = amplitude_spectrum(std::span(record->signals[i]).first(record->signals[i].size() - 1),
@@ -196,6 +210,8 @@ ThesisRuns run_thesis(const RunSettings& settings, const std::function<void(std:
     b_on_soil_of_a.crane.soil.shear_modulus_Pa = case_a.crane.soil.shear_modulus_Pa;
     Case b_at_angle_of_a = case_b;
     b_at_angle_of_a.crane.structure.boom_angle_rad = case_a.crane.structure.boom_angle_rad;
+    Case a_beam = case_a;
+    a_beam.boom = BoomKind::beam;
     using enum LawKind;
     return {.a = run("case A", case_a, none),
             .b = run("case B", case_b, none),
@@ -217,7 +233,8 @@ ThesisRuns run_thesis(const RunSettings& settings, const std::function<void(std:
             .c2_doubled = doubled("case C, law 2", case_c, joint_deflection),
             .a_soft = run("case A on soil half as stiff", a_soft, none),
             .b_on_soil_of_a = run("case B on the soil of case A", b_on_soil_of_a, none),
-            .b_at_angle_of_a = run("case B at the boom angle of case A", b_at_angle_of_a, none)};
+            .b_at_angle_of_a = run("case B at the boom angle of case A", b_at_angle_of_a, none),
+            .a_beam = run("case A with the beam", a_beam, none)};
 }
 
 ThesisRuns rerun(const ThesisRuns& runs, std::string_view case_name,
@@ -314,6 +331,17 @@ double lowest_visible_Hz(const ThesisRun& run, Signal signal) {
 
 double left_over(const ThesisRun& run, Signal signal) {
     return fluctuation(run, signal, run.duration_s() - 3.0) / fluctuation(run, signal, 0.0, 2.0);
+}
+
+double chord_range_m(const ThesisRun& run) {
+    return highest(run, Signal::chord_m) - lowest(run, Signal::chord_m);
+}
+
+double boom_mode_Hz(const ThesisRun& run) {
+    const auto found = std::ranges::find_if(run.modes(), [](const RunMode& mode) {
+        return mode.dominant.starts_with('q') || mode.dominant.starts_with('a');
+    });
+    return found == run.modes().end() ? 0.0 : found->frequency_Hz;
 }
 
 double residual_share(const ThesisRun& run, const ThesisRun& other) {

@@ -9,7 +9,6 @@
 #include "hil/reproduction/spectrum.hpp"
 #include "hil/simulation.hpp"
 #include "plant/equilibrium.hpp"
-#include "plant/linear_modes.hpp"
 
 namespace steadyboom::hil::reproduction {
 
@@ -18,7 +17,7 @@ enum class Signal : int {
     R1_m,
     phi2_rad,
     R9_m,
-    q1_m,
+    q1_m,  ///< of the beam: its deflection at a third and at two thirds of its length
     q2_m,
     phi6_rad,
     phi9_rad,
@@ -36,13 +35,20 @@ enum class Signal : int {
     spool_m,
     power_W,
     contact_fraction,
-    boom_energy_J,   ///< bending and joint motion, about the equilibrium
-    crane_energy_J,  ///< plant::ResidualEnergy
+    boom_energy_J,   ///< bending and joint motion of three links, about the equilibrium; 0 for the beam
+    crane_energy_J,  ///< residual energy, plant/energy.hpp
     count
 };
 
 /// "R1_m", "pendent_tension_N" and so on.
 [[nodiscard]] std::string_view name_of(Signal signal) noexcept;
+
+/// plant::LinearMode with the name of its coordinate, whatever the boom.
+struct RunMode {
+    double frequency_Hz;
+    double damping_ratio;
+    std::string dominant;
+};
 
 /// One run of the thesis: the law sees the true state, nothing is sampled. Signals have one value every `period_s` from
 /// t_s = 0 to `duration_s`. Copies share what was computed, which nothing changes.
@@ -58,14 +64,14 @@ class ThesisRun {
     [[nodiscard]] double period_s() const noexcept { return record_->options.output_period_s; }
     [[nodiscard]] const plant::Equilibrium& rest() const noexcept { return record_->rest; }
     /// About the equilibrium, valve shut, ascending in frequency.
-    [[nodiscard]] const std::vector<plant::LinearMode>& modes() const noexcept { return record_->modes; }
+    [[nodiscard]] const std::vector<RunMode>& modes() const noexcept { return record_->modes; }
     [[nodiscard]] const std::vector<double>& signal(Signal signal) const noexcept {
         return record_->signals[static_cast<std::size_t>(signal)];
     }
     [[nodiscard]] const Spectrum& spectrum(Signal signal) const noexcept {
         return record_->spectra[static_cast<std::size_t>(signal)];
     }
-    /// The crane at a sample; `sample` is an index into every signal.
+    /// The crane at a sample, in the thesis's coordinates; `sample` is an index into every signal.
     [[nodiscard]] plant::CraneState state(std::size_t sample) const noexcept;
     /// Energy of the motion that the soil's damping took, J, at most 0: the soil's work less what its spring holds at
     /// the end (full contact at both ends).
@@ -79,7 +85,7 @@ class ThesisRun {
         std::string name;
         SimulationOptions options;
         plant::Equilibrium rest;
-        std::vector<plant::LinearMode> modes;
+        std::vector<RunMode> modes;
         RunFigures figures;
         std::vector<std::vector<double>> signals;
         std::vector<Spectrum> spectra;
@@ -90,13 +96,13 @@ class ThesisRun {
 };
 
 /// Every run that a claim of chapters 5, 7 and 8 is judged by: the cases without control, laws 1 to 3 on A, law 2 on B
-/// and C, each law with half and twice its gains, case A on soil with half its shear modulus, and case B with case A's
-/// soil or boom angle.
+/// and C, each law with half and twice its gains, case A on soil with half its shear modulus, case B with case A's soil
+/// or boom angle, and case A with the beam for a boom.
 struct ThesisRuns {
     ThesisRun a, b, c, a1, a2, a3, b2, c2;
     ThesisRun a1_halved, a1_doubled, a2_halved, a2_doubled, a3_halved, a3_doubled;
     ThesisRun b2_halved, b2_doubled, c2_halved, c2_doubled;
-    ThesisRun a_soft, b_on_soil_of_a, b_at_angle_of_a;
+    ThesisRun a_soft, b_on_soil_of_a, b_at_angle_of_a, a_beam;
 
     [[nodiscard]] std::vector<const ThesisRun*> all() const;
 };
@@ -140,6 +146,10 @@ inline constexpr double slowest_Hz = 0.4;
 [[nodiscard]] double lowest_visible_Hz(const ThesisRun& run, Signal signal);
 /// How much of a motion's first two seconds is left in its last three.
 [[nodiscard]] double left_over(const ThesisRun& run, Signal signal);
+/// Longest less shortest chord of the run, m.
+[[nodiscard]] double chord_range_m(const ThesisRun& run);
+/// Slowest mode of which the boom's own coordinates have the largest share, Hz.
+[[nodiscard]] double boom_mode_Hz(const ThesisRun& run);
 /// Residual energy of one run over that of another.
 [[nodiscard]] double residual_share(const ThesisRun& run, const ThesisRun& other);
 /// Cosine between two amplitude spectra from slowest_Hz to 30 Hz: 1 if they are proportional, 0 if they share nothing.
