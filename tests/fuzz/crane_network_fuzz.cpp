@@ -16,16 +16,6 @@ constexpr std::int64_t tick_ns = 5'000'000;
 constexpr std::size_t most_ticks = 400;
 constexpr std::size_t most_frames_a_tick = 24;
 
-NetworkConfig config_with(std::uint8_t choice) {
-    NetworkConfig config;
-    for (std::size_t i = 1; i < device_count; ++i) {
-        const bool is_protected = (choice >> (i - 1) & 1U) != 0;
-        config.devices[i].protection = is_protected ? Protection::e2e : Protection::none;
-    }
-    config.bit_rate_bit_s = 1'000'000;
-    return config;
-}
-
 std::uint64_t frames_counted(const NetworkStatus& status) {
     return status.accepted_frames + status.unknown_id_frames + status.wrong_length_frames +
            status.remote_or_extended_frames + status.error_frames;
@@ -61,7 +51,7 @@ GuardedCommand command(CommandGuard& guard, tests::FuzzInput& input) {
 }
 
 void run(tests::FuzzInput input) {
-    CraneNetwork network(config_with(input.byte()));
+    CraneNetwork network(tests::network_config(input.byte()));
     CommandGuard guard({.max_opening_m = 7.6e-3, .max_step_m = 7.6e-3});
     const auto& table = network.table();
     std::int64_t now_ns = input.number<std::int64_t>() >> 2U;

@@ -16,15 +16,6 @@ using tests::require;
 constexpr std::size_t most_rounds = 400;
 constexpr std::size_t most_frames_a_round = 16;
 
-NetworkConfig config_with(std::uint8_t choice) {
-    NetworkConfig config;
-    for (std::size_t i = 1; i < device_count; ++i) {
-        const bool is_protected = (choice >> (i - 1) & 1U) != 0;
-        config.devices[i].protection = is_protected ? Protection::e2e : Protection::none;
-    }
-    return config;
-}
-
 std::uint64_t frames_counted(const DeviceNetworkStatus& status) {
     return status.accepted_frames + status.unknown_id_frames + status.wrong_length_frames +
            status.remote_or_extended_frames + status.error_frames;
@@ -55,7 +46,7 @@ void check_sent(std::span<const CanFrame> frames, const DeviceTable& table) {
 }
 
 void run(tests::FuzzInput input) {
-    DeviceNetwork network(config_with(input.byte()));
+    DeviceNetwork network(tests::network_config(input.byte()));
     const auto& table = network.table();
     const double travel_m = table.config().spool_travel_m;
     std::int64_t now_ns = input.number<std::int64_t>() >> 2U;
@@ -97,7 +88,7 @@ void run(tests::FuzzInput input) {
             for (auto& value : sensors) {
                 value = sensor_value(input);
             }
-            const ValveFeedback feedback{.state = static_cast<plant::ValveState>(input.byte() & 0x0FU),
+            const ValveFeedback feedback{.status = valve_status(input.number<std::uint16_t>()),
                                          .cutoff_open = (input.byte() & 1U) != 0};
             check_sent(network.answer_sync(sensors, feedback, now_ns), table);
             require(!network.sync_pending(), "a SYNC is answered once");

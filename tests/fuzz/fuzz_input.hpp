@@ -68,6 +68,39 @@ class FuzzInput {
     std::span<const std::uint8_t> bytes_;
 };
 
+/// Bits 0 to 6: which devices are protected. Bit 7: a J1939 valve.
+inline drivers::NetworkConfig network_config(std::uint8_t choice) {
+    using namespace drivers;
+    NetworkConfig config;
+    for (std::size_t i = 1; i < device_count; ++i) {
+        const bool is_protected = (choice >> (i - 1) & 1U) != 0;
+        config.devices[i].protection = is_protected ? Protection::e2e : Protection::none;
+    }
+    config.bit_rate_bit_s = 1'000'000;
+    if ((choice & 0x80U) != 0) {
+        auto& valve = config[Device::servo_valve];
+        valve.profile = ValveProfile::j1939;
+        valve.protection = Protection::none;
+        valve.canopen = valve.configure = false;
+        valve.heartbeat_ms = valve.heartbeat_timeout_ms = 0;
+        valve.device_type = 0;
+        config[Pdo::valve_command].extended_id = 0x0CFE3026;
+        config[Pdo::valve_status].extended_id = 0x0CFE1020;
+        config[Pdo::valve_command].length_bytes = config[Pdo::valve_status].length_bytes = 8;
+        config[Signal::valve_control_word].mapped = config[Signal::valve_status_word].mapped = false;
+        auto& set_point = config[Signal::valve_set_point];
+        set_point.type = RawType::u8;
+        set_point.byte_offset = 0;
+        set_point.scale = 0.4;
+        auto& spool = config[Signal::spool];
+        spool.type = RawType::u8;
+        spool.byte_offset = 0;
+        spool.scale = 1.0;
+        spool.offset = -125.0;
+    }
+    return config;
+}
+
 /// Ends the run with a finding unless `holds`.
 inline void require(bool holds, const char* claim) {
     if (!holds) {
