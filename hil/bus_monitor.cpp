@@ -30,7 +30,7 @@ BusMonitor::BusMonitor(drivers::DeviceTable table) : table_(std::move(table)) {
             continue;
         }
         fields_[index_of(row.message)] = fields_of(table_, row.message);
-        if (row.protection == drivers::Protection::e2e && row.pdo != drivers::Pdo::valve_twin) {
+        if (row.protection == drivers::Protection::e2e) {
             messages_[index_of(row.message)].receiver.emplace(row.data_id);
         }
     }

@@ -83,24 +83,27 @@ std::string value_text(const MessageField& field, std::int64_t raw) {
                        field.unit.empty() ? "" : " ", field.unit);
 }
 
-bool is_protection(const MessageField& field) noexcept {
-    return field.signal == Signal::none;
+/// Whether a field says no more than that all is well: a flag that is not set, the ok of a status byte.
+bool says_nothing(const BusMonitor& monitor, const MessageField& field, std::int64_t raw) noexcept {
+    if (field.signal == Signal::none || raw != 0) {
+        return false;
+    }
+    const bool flag = field.size_bits == 1 && field.shift_bits > 0;
+    return flag || std::ranges::any_of(monitor.table().signals(), [&field](const drivers::SignalRow& signal) {
+               return signal.status == field.signal;
+           });
 }
 
-/// The newest values of a message, protection left out; a flag that is not set says nothing.
+/// The newest values of a message, protection left out.
 std::string values_text(const BusMonitor& monitor, const MessageRow& row) {
     const auto& newest = monitor.traffic(row.message).newest;
     std::string text;
     for (const auto& field : monitor.fields(row.message)) {
-        if (row.kind == MessageKind::pdo && is_protection(field)) {
-            continue;
-        }
+        const bool protection = row.kind == MessageKind::pdo && field.signal == Signal::none;
         const auto raw = monitor.raw(field, newest);
-        const bool part = field.signal != Signal::none && field.size_bits == 1 && field.shift_bits > 0;
-        if (part && raw == 0) {
-            continue;
+        if (!protection && !says_nothing(monitor, field, raw)) {
+            text += (text.empty() ? "" : "  ") + value_text(field, raw);
         }
-        text += (text.empty() ? "" : "  ") + value_text(field, raw);
     }
     return text;
 }
@@ -225,13 +228,13 @@ std::string monitor_text(const BusMonitor& monitor, const MonitorView& view) {
             }
             const bool heard = traffic.frames > 0;
             text += fmt::format(
-                "{:<5}{:<24}{:>8}{:>9}  {}", hex_id(row.id, row.extended), row.name,
+                "{:<5}{:<24}{:>8}{:>9}  ", hex_id(row.id, row.extended), row.name,
                 heard ? fmt::format("{:.1f}", view.recent ? traffic.recent_rate_Hz : traffic.mean_rate_Hz()) : "",
-                heard ? age_text(view.now_ns - traffic.newest.stamp_ns) : "never",
-                heard ? values_text(monitor, row) : "");
+                heard ? age_text(view.now_ns - traffic.newest.stamp_ns) : "never");
             if (const auto trouble = trouble_text(traffic); !trouble.empty()) {
-                text += "  " + paint(red, "[" + trouble + "]");
+                text += paint(red, "[" + trouble + "]") + "  ";
             }
+            text += heard ? values_text(monitor, row) : "";
             text.erase(text.find_last_not_of(' ') + 1);
             text += '\n';
         }

@@ -74,6 +74,9 @@ std::string comment_of(const MessageRow& row) {
         case MessageKind::pdo:
             break;
     }
+    if (row.pdo == drivers::Pdo::valve_twin) {
+        return fmt::format("{}: {} with every bit inverted", name_of(row.pdo), name_of(drivers::Pdo::valve_command));
+    }
     return fmt::format("{}, {}", name_of(row.pdo),
                        row.protection == drivers::Protection::e2e
                            ? fmt::format("protected, data id {:#06x}", row.data_id)

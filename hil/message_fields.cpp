@@ -182,14 +182,15 @@ void invert(MessageField& field) {
 
 std::vector<MessageField> pdo_fields(const DeviceTable& table, const MessageRow& row) {
     const bool twin = row.pdo == drivers::Pdo::valve_twin;
+    const MessageRow& plain = twin ? table.row(drivers::Pdo::valve_command) : row;
     std::vector<MessageField> fields;
     for (const auto& signal : table.signals()) {
-        if (signal.present && signal.message == message_of(twin ? drivers::Pdo::valve_command : row.pdo)) {
+        if (signal.present && signal.message == plain.message) {
             append_signal(table, signal.signal, fields);
         }
     }
-    if (row.protection == drivers::Protection::e2e) {
-        append_protection(twin ? table.row(drivers::Pdo::valve_command) : row, fields);
+    if (plain.protection == drivers::Protection::e2e) {
+        append_protection(plain, fields);
     }
     if (twin) {
         std::ranges::for_each(fields, invert);

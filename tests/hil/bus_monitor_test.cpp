@@ -28,7 +28,7 @@ CanFrame angle_frame(const DeviceTable& table, double angle_rad, std::int64_t st
 }
 
 TEST(BusMonitor, RatesAgesAndValuesAreOfTheFramesStamps) {
-    const DeviceTable table{drivers::NetworkConfig{}};
+    const DeviceTable table(unprotected_network());
     BusMonitor monitor(table);
     for (int i = 0; i <= 200; ++i) {
         monitor.take(angle_frame(table, 1.0, i * tick_ns));
@@ -48,7 +48,7 @@ TEST(BusMonitor, RatesAgesAndValuesAreOfTheFramesStamps) {
 }
 
 TEST(BusMonitor, AWindowsRateIsOfThatWindowAlone) {
-    const DeviceTable table{drivers::NetworkConfig{}};
+    const DeviceTable table(unprotected_network());
     BusMonitor monitor(table);
     monitor.take(angle_frame(table, 1.0, 0));
     monitor.close_window(0);
@@ -62,7 +62,7 @@ TEST(BusMonitor, AWindowsRateIsOfThatWindowAlone) {
 }
 
 TEST(BusMonitor, WhatIsNotOursIsCountedByReason) {
-    const DeviceTable table{drivers::NetworkConfig{}};
+    const DeviceTable table(unprotected_network());
     BusMonitor monitor(table);
     monitor.take({.id = 0x123, .length = 2, .stamp_ns = 1});
     monitor.take({.id = 0x194, .length = 4, .extended = true, .stamp_ns = 2});
@@ -96,7 +96,7 @@ TEST(BusMonitor, AFloodOfUnknownIdentifiersTakesBoundedMemory) {
 }
 
 TEST(BusMonitor, BadValuesAndBadStatusBytesAreCounted) {
-    const DeviceTable table{drivers::NetworkConfig{}};
+    const DeviceTable table(unprotected_network());
     BusMonitor monitor(table);
     auto angle = table.blank(message_of(Pdo::boom_angle), 0);
     write_raw(table.row(Signal::boom_angle), 120'001, angle);
@@ -107,11 +107,12 @@ TEST(BusMonitor, BadValuesAndBadStatusBytesAreCounted) {
     monitor.take(load);
     EXPECT_EQ(monitor.traffic(message_of(Pdo::load_pin)).out_of_range_values, 0U);
     EXPECT_EQ(monitor.traffic(message_of(Pdo::load_pin)).faulty_values, 1U);
-    EXPECT_THAT(monitor_text(monitor, {}), HasSubstr("line_tension_status overflow  [called faulty 1]"));
+    EXPECT_THAT(monitor_text(monitor, {}),
+                HasSubstr("[called faulty 1]  line_tension 0 N  line_tension_status overflow\n"));
 }
 
 TEST(BusMonitor, NodeStatesBootUpsAndEmergenciesAreTold) {
-    const DeviceTable table{drivers::NetworkConfig{}};
+    const DeviceTable table(unprotected_network());
     BusMonitor monitor(table);
     auto heartbeat = table.blank(heartbeat_of(Device::load_pin), 0);
     monitor.take(heartbeat);
@@ -129,7 +130,7 @@ TEST(BusMonitor, NodeStatesBootUpsAndEmergenciesAreTold) {
 
 /// A protected boom angle on each SYNC, of which `damage` may change what leaves.
 BusMonitor protected_second(const std::function<void(int tick, CanFrame&, BusMonitor&)>& damage) {
-    const DeviceTable table(protected_network());
+    const DeviceTable table{drivers::NetworkConfig{}};
     BusMonitor monitor(table);
     for (int tick = 0; tick < 200; ++tick) {
         auto sync = table.blank(Message::sync, tick * tick_ns);

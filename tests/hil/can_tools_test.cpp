@@ -21,9 +21,11 @@
 #include "drivers/sdo_client.hpp"
 #include "drivers/sdo_server.hpp"
 #include "hil/bus_monitor.hpp"
+#include "hil/can_table.hpp"
 #include "hil/dbc_file.hpp"
 #include "hil/lockstep_run.hpp"
 #include "hil/run_folder.hpp"
+#include "runtime/network_file.hpp"
 #include "tests/hil/sample_networks.hpp"
 
 namespace steadyboom::hil {
@@ -112,7 +114,7 @@ void expect_codecs_values(const BusMonitor& monitor, const drivers::MessageRow& 
 }
 
 TEST_F(CanTools, CanconvertReadsTheWholeDbc) {
-    for (const auto& config : {drivers::NetworkConfig{}, protected_network(), foreign_network()}) {
+    for (const auto& config : {drivers::NetworkConfig{}, unprotected_network(), foreign_network()}) {
         const DeviceTable table(config);
         write("network.dbc", dbc_of(table));
         const auto outcome = run("canconvert --jsonExportAll network.dbc network.json");
@@ -144,7 +146,7 @@ TEST_F(CanTools, CanconvertReadsTheWholeDbc) {
 
 TEST_F(CanTools, CanmatrixDecodesFramesToTheSameValuesAsTheCodec) {
     std::mt19937_64 random(404);
-    for (const auto& config : {drivers::NetworkConfig{}, protected_network(), foreign_network()}) {
+    for (const auto& config : {drivers::NetworkConfig{}, unprotected_network(), foreign_network()}) {
         const BusMonitor monitor{DeviceTable(config)};
         std::ostringstream expected;
         for (const auto& row : monitor.table().messages()) {
@@ -302,6 +304,60 @@ TEST_F(CanTools, TsharkDecodesSdoTransfersAndEmergencies) {
     EXPECT_EQ(rows[6][6], "0x8130");
     EXPECT_EQ(rows[6][7], "0x11");
     EXPECT_EQ(rows[6][8], "0102030405");
+}
+
+/// Text of a file in the repository.
+std::string content(const std::string& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+/// Runs of spaces as one: how wide a table's columns are is not what a page shows it for.
+std::string squeezed(const std::string& text) {
+    std::string result;
+    for (const char character : text) {
+        if (character != ' ' || !result.ends_with(' ')) {
+            result += character;
+        }
+    }
+    return result;
+}
+
+TEST_F(CanTools, TheRowsOfThePageJoinADeviceLoadAndMeanWhatItSays) {
+    const auto page = content(STEADYBOOM_JOIN_A_DEVICE);
+    const std::string fence = "```toml\n";
+    const auto begin = page.find(fence);
+    ASSERT_NE(begin, std::string::npos);
+    const auto end = page.find("```\n", begin + fence.size());
+    ASSERT_NE(end, std::string::npos);
+    write("network.toml", page.substr(begin + fence.size(), end - begin - fence.size()));
+    const auto config = runtime::load_network_file(folder_ / "network.toml", {});
+    const auto& device = config[drivers::Device::boom_inclinometer];
+    EXPECT_EQ(device.protection, drivers::Protection::none);
+    EXPECT_EQ(device.vendor_id, 0x195U);
+    // The frame of the page's device: 59.84 deg in steps of 0.01, and the second axis behind it.
+    const DeviceTable table(config);
+    auto frame = table.blank(message_of(drivers::Pdo::boom_angle), 0);
+    EXPECT_EQ(frame.id, 0x194U);
+    ASSERT_EQ(frame.length, 4);
+    frame.data = {0x60, 0x17};
+    EXPECT_NEAR(*decode_value(table.row(drivers::Signal::boom_angle), frame), 59.84 * M_PI / 180.0, 1e-12);
+    // Lines that the page shows of the table are the table's.
+    const auto text = squeezed(can_table_text(table));
+    int shown = 0;
+    std::istringstream lines(page);
+    for (std::string line; std::getline(lines, line);) {
+        line = squeezed(line);
+        if (line.starts_with(" 0x14 boom_inclinometer CiA 410") ||
+            line.starts_with(" 194 boom_inclinometer_tpdo1 boom_angle b") ||
+            line.starts_with(" boom_inclinometer_tpdo1 boom_angle")) {
+            ++shown;
+            EXPECT_NE(text.find('\n' + line.substr(1) + '\n'), std::string::npos) << line;
+        }
+    }
+    EXPECT_EQ(shown, 3);
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 
 namespace steadyboom::hil {
 
-/// Every device with counter and checksum.
-inline drivers::NetworkConfig protected_network() {
+/// No device with counter and checksum, as bought ones are.
+inline drivers::NetworkConfig unprotected_network() {
     drivers::NetworkConfig config;
-    for (std::size_t i = 1; i < drivers::device_count; ++i) {
-        config.devices[i].protection = drivers::Protection::e2e;
+    for (auto& device : config.devices) {
+        device.protection = drivers::Protection::none;
     }
     return config;
 }
@@ -16,7 +16,7 @@ inline drivers::NetworkConfig protected_network() {
 /// Devices that differ from the virtual crane's in all that a network file can say.
 inline drivers::NetworkConfig foreign_network() {
     using drivers::Signal;
-    drivers::NetworkConfig config = protected_network();
+    drivers::NetworkConfig config;
     auto& inclinometer = config[drivers::Device::boom_inclinometer];
     inclinometer.node_id = 0x0A;
     inclinometer.protection = drivers::Protection::none;
