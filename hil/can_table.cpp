@@ -154,8 +154,8 @@ std::string can_table_text(const DeviceTable& table) {
         const auto device = static_cast<Device>(i);
         const auto& d = config[device];
         const bool ours = device == Device::controller;
-        devices.add({fmt::format("{:#04x}", d.node_id), std::string(name_of(device)), std::string(profile_of(device)),
-                     ours ? "" : std::string(name_of_protection(d.protection)),
+        devices.add({fmt::format("{:#04x}", d.node_id), std::string(name_of(device)),
+                     std::string(profile_of(config, device)), ours ? "" : std::string(name_of_protection(d.protection)),
                      ours         ? ""
                      : d.required ? "yes"
                                   : "no",
@@ -210,7 +210,7 @@ std::string can_table_json(const DeviceTable& table) {
         const auto& d = config[device];
         json["devices"].push_back({{"name", name_of(device)},
                                    {"node_id", d.node_id},
-                                   {"profile", profile_of(device)},
+                                   {"profile", profile_of(config, device)},
                                    {"protection", name_of_protection(d.protection)},
                                    {"required", d.required},
                                    {"configure", d.configure},

@@ -148,7 +148,8 @@ class DbcWriter {
     void put_attributes() {
         for (std::size_t i = 0; i < drivers::device_count; ++i) {
             const auto device = static_cast<Device>(i);
-            put("CM_ BU_ {} \"node {:#04x}, {}\";\n", name_of(device), table_.node_id(device), profile_of(device));
+            put("CM_ BU_ {} \"node {:#04x}, {}\";\n", name_of(device), table_.node_id(device),
+                profile_of(table_.config(), device));
         }
         put("\nBA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;\nBA_DEF_DEF_ \"GenMsgCycleTime\" 0;\n");
         for (const auto& message : messages_) {

@@ -63,6 +63,10 @@ constexpr std::array valve_modes = {
     RawWord{drivers::control_disabled | drivers::control_hold | drivers::control_active, "active"},
 };
 constexpr std::array no_yes = {RawWord{0, "no"}, RawWord{1, "yes"}};
+constexpr std::array port_commands = {RawWord{0, "block"}, RawWord{1, "extend"}, RawWord{2, "retract"},
+                                      RawWord{3, "float"}};
+constexpr std::array port_states = {RawWord{0, "blocked"},  RawWord{1, "extend"}, RawWord{2, "retract"},
+                                    RawWord{3, "floating"}, RawWord{14, "error"}, RawWord{15, "not_available"}};
 constexpr std::array qualities = {RawWord{0, "good"}};
 constexpr std::array all_nodes = {RawWord{0, "all"}};
 
@@ -180,6 +184,15 @@ void invert(MessageField& field) {
     field.signal = Signal::none;
 }
 
+/// What an auxiliary valve's messages carry beside the flow (docs/j1939-valve.md).
+void append_port(const MessageRow& row, std::vector<MessageField>& fields) {
+    if (row.pdo == drivers::Pdo::valve_command) {
+        fields.push_back(plain_field("port_command", 16, 4, port_commands, "its direction; the set-point has no sign"));
+    } else if (row.pdo == drivers::Pdo::valve_status) {
+        fields.push_back(plain_field("port_state", 16, 4, port_states));
+    }
+}
+
 std::vector<MessageField> pdo_fields(const DeviceTable& table, const MessageRow& row) {
     const bool twin = row.pdo == drivers::Pdo::valve_twin;
     const MessageRow& plain = twin ? table.row(drivers::Pdo::valve_command) : row;
@@ -188,6 +201,9 @@ std::vector<MessageField> pdo_fields(const DeviceTable& table, const MessageRow&
         if (signal.present && signal.message == plain.message) {
             append_signal(table, signal.signal, fields);
         }
+    }
+    if (table.config()[row.device].profile == drivers::ValveProfile::j1939) {
+        append_port(row, fields);
     }
     if (plain.protection == drivers::Protection::e2e) {
         append_protection(plain, fields);
@@ -259,7 +275,7 @@ std::vector<MessageField> fields_of(const DeviceTable& table, Message message) {
     return pdo_fields(table, row);
 }
 
-std::string_view profile_of(Device device) noexcept {
+std::string_view profile_of(const drivers::NetworkConfig& config, Device device) noexcept {
     switch (device) {
         case Device::controller:
             return "CiA 301";
@@ -272,7 +288,7 @@ std::string_view profile_of(Device device) noexcept {
         case Device::drum_encoder:
             return "CiA 406";
         case Device::servo_valve:
-            return "CiA 408";
+            return config[device].profile == drivers::ValveProfile::j1939 ? "ISO 11783-7" : "CiA 408";
         case Device::safety_io:
             return "CiA 401";
     }

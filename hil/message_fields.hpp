@@ -44,6 +44,6 @@ struct MessageField {
 [[nodiscard]] std::vector<MessageField> fields_of(const drivers::DeviceTable& table, drivers::Message message);
 
 /// "CiA 404", the profile of a device.
-[[nodiscard]] std::string_view profile_of(drivers::Device device) noexcept;
+[[nodiscard]] std::string_view profile_of(const drivers::NetworkConfig& config, drivers::Device device) noexcept;
 
 }  // namespace steadyboom::hil

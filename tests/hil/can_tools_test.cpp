@@ -114,7 +114,7 @@ void expect_codecs_values(const BusMonitor& monitor, const drivers::MessageRow& 
 }
 
 TEST_F(CanTools, CanconvertReadsTheWholeDbc) {
-    for (const auto& config : {drivers::NetworkConfig{}, unprotected_network(), foreign_network()}) {
+    for (const auto& config : {drivers::NetworkConfig{}, unprotected_network(), foreign_network(), j1939_network()}) {
         const DeviceTable table(config);
         write("network.dbc", dbc_of(table));
         const auto outcome = run("canconvert --jsonExportAll network.dbc network.json");
@@ -146,7 +146,7 @@ TEST_F(CanTools, CanconvertReadsTheWholeDbc) {
 
 TEST_F(CanTools, CanmatrixDecodesFramesToTheSameValuesAsTheCodec) {
     std::mt19937_64 random(404);
-    for (const auto& config : {drivers::NetworkConfig{}, unprotected_network(), foreign_network()}) {
+    for (const auto& config : {drivers::NetworkConfig{}, unprotected_network(), foreign_network(), j1939_network()}) {
         const BusMonitor monitor{DeviceTable(config)};
         std::ostringstream expected;
         for (const auto& row : monitor.table().messages()) {

@@ -59,7 +59,7 @@ TEST(DbcFile, AForeignDevicesValuesStandAsItsNetworkFileSays) {
 }
 
 TEST(DbcFile, NamesFitTheFormatAndFieldsOverlapNowhere) {
-    for (const auto& config : {drivers::NetworkConfig{}, unprotected_network(), foreign_network()}) {
+    for (const auto& config : {drivers::NetworkConfig{}, unprotected_network(), foreign_network(), j1939_network()}) {
         const drivers::DeviceTable table(config);
         std::set<std::string> messages;
         for (const auto& row : table.messages()) {
