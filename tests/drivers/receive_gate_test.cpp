@@ -190,6 +190,41 @@ TEST_P(ReceiveGateTest, WhatTheGateRefusesLeavesNoTraceInTheMeasurement) {
     }
 }
 
+TEST(ReceiveGateOfAJ1939Valve, TakesOneIdentifierOfAllOfItsGroupsEachWay) {
+    NetworkConfig config;
+    auto& valve = config[Device::servo_valve];
+    valve.profile = ValveProfile::j1939;
+    valve.protection = Protection::none;
+    valve.canopen = valve.configure = false;
+    valve.heartbeat_ms = valve.heartbeat_timeout_ms = 0;
+    valve.device_type = 0;
+    config[Pdo::valve_command].extended_id = 0x0CFE3026;
+    config[Pdo::valve_status].extended_id = 0x0CFE1020;
+    config[Pdo::valve_command].length_bytes = config[Pdo::valve_status].length_bytes = 8;
+    config[Signal::valve_control_word].mapped = config[Signal::valve_status_word].mapped = false;
+    config[Signal::valve_set_point].type = config[Signal::spool].type = RawType::u8;
+    config[Signal::valve_set_point].byte_offset = config[Signal::spool].byte_offset = 0;
+    config[Signal::valve_set_point].scale = 0.4;
+    config[Signal::spool].scale = 1.0;
+    config[Signal::spool].offset = -125.0;
+    CraneNetwork controller(config);
+    DeviceNetwork devices(config);
+    for (std::uint32_t low = 0; low <= 0xFFFF; ++low) {
+        for (std::uint8_t length = 0; length <= 8; ++length) {
+            const std::array frames = {CanFrame{.id = 0x0CFE'0000U | low, .length = length, .extended = true}};
+            (void)controller.decode(frames, 0);
+            devices.receive(frames, 0);
+            const auto taken = [&](std::uint32_t id) {
+                return frames[0].id > id || (frames[0].id == id && length == 8);
+            };
+            ASSERT_EQ(controller.status().accepted_frames, taken(0x0CFE1020) ? 1U : 0U) << std::hex << low;
+            ASSERT_EQ(devices.status().accepted_frames, taken(0x0CFE3026) ? 1U : 0U) << std::hex << low;
+        }
+    }
+    EXPECT_EQ(controller.status().wrong_length_frames, 8U);
+    EXPECT_EQ(devices.status().wrong_length_frames, 8U);
+}
+
 INSTANTIATE_TEST_SUITE_P(Protection, ReceiveGateTest, ::testing::Values(Protection::none, Protection::e2e),
                          [](const auto& chosen) {
                              return std::string(chosen.param == Protection::none ? "Unprotected" : "Protected");
