@@ -35,6 +35,7 @@ enum class Pdo : std::uint8_t {
     valve_twin,  ///< valve_command with every bit of its data inverted; there only if the valve is protected
 };
 inline constexpr std::size_t pdo_count = 11;
+inline constexpr std::size_t tpdo_count = 8;  ///< the first ones, which devices send
 
 /// Every process value inside the PDOs.
 enum class Signal : std::uint8_t {

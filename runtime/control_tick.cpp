@@ -114,7 +114,8 @@ void ControlTick::answer_operator() noexcept {
     mailbox_.publish({.tick = record_.tick,
                       .time_ns = record_.time_ns,
                       .state = record_.interlock_state,
-                      .reasons = record_.permission_reasons});
+                      .reasons = record_.permission_reasons,
+                      .device_state = record_.device_state});
 }
 
 void ControlTick::run(const TickStart& start) noexcept {
@@ -196,8 +197,28 @@ void ControlTick::run(const TickStart& start) noexcept {
     r.link_state = static_cast<std::uint8_t>(bus.link);
     r.transmit_error_count = bus.transmit_error_count;
     r.receive_error_count = bus.receive_error_count;
+    record_network();
     answer_operator();
     ring_.push(r);
+}
+
+void ControlTick::record_network() noexcept {
+    TickRecord& r = record_;
+    for (std::size_t i = 1; i < drivers::device_count; ++i) {
+        const drivers::NodeStatus& node = network_.node(static_cast<drivers::Device>(i));
+        r.device_state[i] = static_cast<std::uint8_t>(node.managed);
+        r.emergency_code[i] = node.emergency.code;
+    }
+    for (std::size_t i = 0; i < drivers::tpdo_count; ++i) {
+        const auto pdo = static_cast<drivers::Pdo>(i);
+        r.message_state[i] = static_cast<std::uint8_t>(network_.state(pdo));
+        r.message_lag_ticks[i] = network_.lag_ticks(pdo);
+    }
+    r.valve_flag_bits = drivers::status_word(network_.valve()) & 0x0F00U;
+    const drivers::NetworkStatus& network = network_.status();
+    r.rejected_frames =
+        network.rejected_frames + network.late_frames + network.unbelieved_frames + network.not_operational_frames;
+    r.implausible_values = network.implausible_values;
 }
 
 }  // namespace steadyboom::runtime

@@ -69,6 +69,7 @@ class ControlTick {
   private:
     [[nodiscard]] controllers::OperatorIntent next_intent() noexcept;
     void answer_operator() noexcept;
+    void record_network() noexcept;
     [[nodiscard]] std::int64_t lap_ns() noexcept;
 
     drivers::CanBus& bus_;

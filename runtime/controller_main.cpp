@@ -38,6 +38,28 @@ runtime::ControlTickConfig tick_config(const runtime::ControllerConfig& config) 
             .overruns_are_faults = config.realtime_required};
 }
 
+/// "load_pin is lost, drum_encoder is unknown"; empty if every device is operational.
+std::string missing_devices(const runtime::OperatorStatus& status) {
+    std::string text;
+    for (std::size_t i = 1; i < drivers::device_count; ++i) {
+        const auto state = static_cast<drivers::DeviceState>(status.device_state[i]);
+        if (state != drivers::DeviceState::operational) {
+            text += (text.empty() ? "" : ", ") + std::string(drivers::name_of(static_cast<drivers::Device>(i))) +
+                    " is " + std::string(drivers::name_of(state));
+        }
+    }
+    return text;
+}
+
+/// "STANDBY: a required device is not operational; load_pin is lost"
+std::string describe(const runtime::OperatorStatus& status) {
+    std::string text = controllers::name_of(static_cast<InterlockState>(status.state));
+    const std::string reasons = controllers::reasons_in_words(status.reasons);
+    const std::string devices = missing_devices(status);
+    text += reasons.empty() ? "" : ": " + reasons;
+    return devices.empty() ? text : text + "; " + devices;
+}
+
 /// Watches the tick from outside: logs what changed, and feeds the service manager's watchdog only while ticks go on.
 class Supervisor {
   public:
@@ -52,6 +74,7 @@ class Supervisor {
         int rounds_since_skip_report = 0;
         std::uint32_t last_state = ~0U;
         std::uint32_t last_reasons = 0;
+        std::array<std::uint8_t, drivers::device_count> last_devices{};
         while (!stop.stop_requested()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
             const runtime::LoopStatistics& statistics = loop_.statistics();
@@ -69,10 +92,10 @@ class Supervisor {
                 rounds_since_skip_report = 0;
             }
             const runtime::OperatorStatus status = mailbox_.status();
-            if (status.time_ns != 0 && (status.state != last_state || status.reasons != last_reasons)) {
-                spdlog::info("tick {}: {}: {}", status.tick,
-                             controllers::name_of(static_cast<InterlockState>(status.state)),
-                             controllers::reasons_in_words(status.reasons));
+            if (status.time_ns != 0 &&
+                (status.state != last_state || status.reasons != last_reasons || status.device_state != last_devices)) {
+                spdlog::info("tick {}: {}", status.tick, describe(status));
+                last_devices = status.device_state;
                 last_state = status.state;
                 last_reasons = status.reasons;
             }
@@ -102,11 +125,7 @@ int control(const runtime::ControllerConfig& config) {
 
     runtime::OperatorSocketOptions socket_options;
     socket_options.path = config.operator_socket_path;
-    socket_options.describe = [](const runtime::OperatorStatus& status) {
-        std::string text = controllers::name_of(static_cast<InterlockState>(status.state));
-        const std::string reasons = controllers::reasons_in_words(status.reasons);
-        return reasons.empty() ? text : text + ": " + reasons;
-    };
+    socket_options.describe = describe;
     socket_options.log = [](const std::string& line) { spdlog::info("operator: {}", line); };
     const runtime::OperatorSocket socket(socket_options, mailbox, clock);
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
 #include <boost/lockfree/spsc_queue.hpp>
 
+#include "drivers/network_config.hpp"
 #include "runtime/seqlock.hpp"
 
 namespace steadyboom::runtime {
@@ -49,6 +51,7 @@ struct OperatorStatus {
     std::int64_t time_ns = 0;  ///< steady time of that tick; 0 before the first
     std::uint32_t state = 0;
     std::uint32_t reasons = 0;
+    std::array<std::uint8_t, drivers::device_count> device_state{};  ///< drivers::DeviceState
 };
 
 /// Requests to the control tick and its answers, with no lock between the tick and the rest of the process.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "drivers/network_config.hpp"
 #include "plant/crane_measurement.hpp"
 #include "plant/crane_state.hpp"
 
@@ -18,7 +19,7 @@ namespace steadyboom::runtime {
 /// start.
 struct TickRecord {
     /// Raised whenever the layout or a meaning below changes; readers refuse any other.
-    static constexpr std::uint32_t layout_version = 2;
+    static constexpr std::uint32_t layout_version = 3;
 
     std::uint64_t tick = 0;             ///< index k of the schedule; skipped ticks leave gaps
     std::int64_t time_ns = 0;           ///< when tick k was due, t0 + k T
@@ -58,6 +59,16 @@ struct TickRecord {
     std::uint8_t transmit_error_count = 0;  ///< of the CAN controller
     std::uint8_t receive_error_count = 0;
     std::uint8_t reserved = 0;
+
+    // The network; all indexed as drivers::Device and drivers::Pdo are.
+    std::array<std::uint8_t, drivers::device_count> device_state{};     ///< drivers::DeviceState; [0] means nothing
+    std::array<std::uint16_t, drivers::device_count> emergency_code{};  ///< in force, 0: none
+    std::array<std::uint8_t, drivers::tpdo_count> message_state{};      ///< drivers::ReceiverState
+    std::array<std::uint8_t, drivers::tpdo_count> message_lag_ticks{};  ///< behind the SYNC, of protected messages
+    std::uint32_t valve_flag_bits = 0;  ///< bits 8 to 11 of the CiA 408 status word, the others 0
+    std::uint32_t network_reserved = 0;
+    std::uint64_t rejected_frames = 0;     ///< wrong checksum, counter, late, not believed, of a device not started
+    std::uint64_t implausible_values = 0;  ///< out of range or faster than physics allows
 
     // Health of bus and schedule.
     std::int64_t newest_frame_kernel_stamp_ns = 0;  ///< wall clock; recorded, never used for an age

@@ -56,6 +56,7 @@ enum class Verdict { aim, must, missed, absent, disagree };
 [[nodiscard]] std::vector<Row> dynamics_rows();
 [[nodiscard]] std::vector<Row> integration_rows();
 [[nodiscard]] std::vector<Row> lockstep_rows();
+[[nodiscard]] std::vector<Row> network_rows();
 [[nodiscard]] std::vector<Row> telemetry_rows();
 
 }  // namespace steadyboom::hil::benchmark

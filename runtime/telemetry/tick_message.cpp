@@ -1,5 +1,7 @@
 #include "runtime/telemetry/tick_message.hpp"
 
+#include <algorithm>
+
 namespace steadyboom::runtime {
 
 namespace {
@@ -84,6 +86,15 @@ steadyboom::tick_t to_message(const TickRecord& record) {
     message.cutoff_energised = static_cast<std::int8_t>(record.cutoff_energised);
     message.cutoff_open = static_cast<std::int8_t>(record.cutoff_open);
     message.emergency_stop_healthy = static_cast<std::int8_t>(record.emergency_stop_healthy);
+    static_assert(sizeof(message.device_state) == drivers::device_count);
+    static_assert(sizeof(message.message_state) == drivers::tpdo_count);
+    std::ranges::copy(record.device_state, message.device_state);
+    std::ranges::copy(record.emergency_code, message.emergency_code_bits);
+    std::ranges::copy(record.message_state, message.message_state);
+    std::ranges::copy(record.message_lag_ticks, message.message_lag_ticks);
+    message.valve_flag_bits = static_cast<std::int32_t>(record.valve_flag_bits);
+    message.rejected_frames = static_cast<std::int64_t>(record.rejected_frames);
+    message.implausible_values = static_cast<std::int64_t>(record.implausible_values);
     message.link_state = record.link_state;
     message.transmit_error_count = record.transmit_error_count;
     message.receive_error_count = record.receive_error_count;

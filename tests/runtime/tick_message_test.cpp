@@ -38,6 +38,15 @@ TEST(TickMessage, EachFieldOfTheRecordArrivesUnderItsOwnName) {
     record.applied_mode = 9;
     record.cutoff_permitted = 1;
     record.cutoff_open = 1;
+    for (std::size_t i = 0; i < record.device_state.size(); ++i) {
+        record.device_state[i] = static_cast<std::uint8_t>(70 + i);
+        record.emergency_code[i] = static_cast<std::uint16_t>(0x8200 + i);
+        record.message_state[i] = static_cast<std::uint8_t>(80 + i);
+        record.message_lag_ticks[i] = static_cast<std::uint8_t>(90 + i);
+    }
+    record.valve_flag_bits = 0x0800;
+    record.rejected_frames = 32;
+    record.implausible_values = 33;
     record.link_state = 3;
     record.transmit_error_count = 255;
     record.receive_error_count = 29;
@@ -113,6 +122,15 @@ TEST(TickMessage, EachFieldOfTheRecordArrivesUnderItsOwnName) {
     EXPECT_EQ(message.cutoff_energised, 0);
     EXPECT_EQ(message.cutoff_open, 1);
     EXPECT_EQ(message.emergency_stop_healthy, 0);
+    for (int i = 0; i < 8; ++i) {
+        EXPECT_EQ(message.device_state[i], 70 + i);
+        EXPECT_EQ(static_cast<std::uint16_t>(message.emergency_code_bits[i]), 0x8200 + i);
+        EXPECT_EQ(message.message_state[i], 80 + i);
+        EXPECT_EQ(message.message_lag_ticks[i], 90 + i);
+    }
+    EXPECT_EQ(message.valve_flag_bits, 0x0800);
+    EXPECT_EQ(message.rejected_frames, 32);
+    EXPECT_EQ(message.implausible_values, 33);
     EXPECT_EQ(message.link_state, 3);
     EXPECT_EQ(message.transmit_error_count, 255);
     EXPECT_EQ(message.receive_error_count, 29);
