@@ -73,8 +73,8 @@ Condition gain_would_have_to_be(ThesisRun ThesisRuns::*run, ThesisRun ThesisRuns
     return [=](const ThesisRuns& r) {
         const auto energy_J = [&](ThesisRun ThesisRuns::*which) { return (r.*which).figures().residual_energy_J; };
         return fmt::format(
-            "The printed gain would have to lie near the best. Half of it leaves {:.3g} J, the gain as "
-            "printed {:.3g} J, twice that {:.3g} J",
+            "The printed gain would have to lie near the best. Half of it leaves {:.0f} J, the gain as "
+            "printed {:.0f} J, twice that {:.0f} J",
             energy_J(halved), energy_J(run), energy_J(doubled));
     };
 }

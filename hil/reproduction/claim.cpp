@@ -139,11 +139,16 @@ std::string modes_in_words(const ThesisRun& run) {
 std::string mode_would_have_to_be(const ThesisRun& run, double frequency_Hz) {
     const RunMode& nearest = *std::ranges::min_element(
         run.modes(), {}, [&](const RunMode& mode) { return std::abs(std::log(mode.frequency_Hz / frequency_Hz)); });
-    const double factor = std::pow(frequency_Hz / nearest.frequency_Hz, 2);
+    const double ratio = frequency_Hz / nearest.frequency_Hz;
+    const std::string modes = fmt::format("the linear modes of {} are at {}", run.name(), modes_in_words(run));
+    if (std::abs(ratio - 1.0) <= 0.1) {
+        return fmt::format("The mode in {}, at {:.3g} Hz, would have to be what is excited most; {}", nearest.dominant,
+                           nearest.frequency_Hz, modes);
+    }
     return fmt::format(
-        "A mode would have to be at {:.3g} Hz, and the catch excite it most. The nearest, in {}, is at {:.3g} Hz and "
-        "would need {:.2g} times its stiffness for its mass; the linear modes of {} are at {}",
-        frequency_Hz, nearest.dominant, nearest.frequency_Hz, factor, run.name(), modes_in_words(run));
+        "A mode would have to be at {:.3g} Hz and be excited most. The nearest, in {}, is at {:.3g} Hz and would need "
+        "{:.2g} times its stiffness for its mass; {}",
+        frequency_Hz, nearest.dominant, nearest.frequency_Hz, ratio * ratio, modes);
 }
 
 std::string booms_would_have_to_be_alike(const ThesisRuns& runs) {

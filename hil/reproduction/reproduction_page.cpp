@@ -24,7 +24,7 @@ constexpr std::string_view style = R"(
 table{width:100%;font-size:.9rem;table-layout:fixed}
 th,td{padding:.35rem .5rem;text-align:left;vertical-align:top;overflow-wrap:anywhere}
 td small{display:block;margin-top:.15rem}
-.v{font-weight:650;padding-left:.6rem}
+.v{font-weight:650;padding-left:.5rem}
 .v0{border-left:6px solid var(--good);color:var(--good)}
 .v1{border-left:6px double var(--fair);color:var(--fair)}
 .v2{border-left:6px dashed var(--bad);color:var(--bad)}
@@ -32,7 +32,7 @@ td small{display:block;margin-top:.15rem}
 tr{border-bottom:2px solid var(--line);padding:.5rem 0}td{border-bottom:0;padding:.12rem .2rem}
 .v{border-left-width:6px;padding-left:.6rem;margin-top:.3rem}
 td[data-k]::before{content:attr(data-k) ": ";color:var(--soft)}}
-@media print{table{font-size:8.5pt}th,td{padding:.2rem .35rem}}
+@media print{table{font-size:8.5pt}th,td{padding:.2rem .35rem}td small{font-size:7.5pt;line-height:1.35}}
 )";
 
 constexpr std::array<std::string_view, all_verdicts.size()> marks{"●", "◐", "○"};
@@ -105,9 +105,9 @@ class Page : HtmlPage {
         std::string section;
         for (const Row& row : rows_) {
             if (row.section != section) {
-                put("{}<h2>Chapter {}</h2>\n<table>\n<thead><tr><th style=\"width:6rem\">row</th><th "
-                    "style=\"width:28%\">claim</th><th style=\"width:11%\">thesis</th><th>here</th><th "
-                    "style=\"width:10rem\">verdict</th></tr></thead>\n<tbody>\n",
+                put("{}<h2>Chapter {}</h2>\n<table>\n<thead><tr><th style=\"width:8%\">row</th><th "
+                    "style=\"width:25%\">claim</th><th style=\"width:11%\">thesis</th><th>here</th><th "
+                    "style=\"width:14%\">verdict</th></tr></thead>\n<tbody>\n",
                     section.empty() ? "" : "</tbody>\n</table>\n", html_text(row.section));
                 section = row.section;
             }
@@ -120,18 +120,27 @@ class Page : HtmlPage {
                 put("<small>For it to hold: {}</small>", html_text(row.would_hold_if));
             }
             if (const auto turned = std::ranges::find(turned_, &row, &TurnedRow::row); turned != turned_.end()) {
-                put("<small>Hangs on: {}</small>", html_text(turns_in_words(*turned)));
+                put("<small>Sensitivity: {}</small>", html_text(turns_in_words(*turned)));
             }
             put("</td><td class=\"v v{}\">{} {}</td></tr>\n", verdict, marks[verdict], name_of(row.verdict));
         }
         put("</tbody>\n</table>\n");
     }
 
-    /// "soil.poisson_ratio = 0.2 (holds), ..."
+    /// "holds with nu = 0.2, nu = 0.4; does not hold with valve nonlinear"
     static std::string turns_in_words(const TurnedRow& row) {
         std::string words;
-        for (const TurnedRow::Turn& turn : row.turns) {
-            words += fmt::format("{}{} ({})", words.empty() ? "" : ", ", name_of(*turn.variation), name_of(turn.to));
+        for (const Verdict verdict : all_verdicts) {
+            std::string_view separator;
+            for (const TurnedRow::Turn& turn : row.turns) {
+                if (turn.to == verdict) {
+                    if (separator.empty()) {
+                        words += fmt::format("{}{} with ", words.empty() ? "" : "; ", name_of(verdict));
+                    }
+                    words += fmt::format("{}{}", separator, turn.variation->symbol);
+                    separator = ", ";
+                }
+            }
         }
         return words;
     }
@@ -185,11 +194,13 @@ class Page : HtmlPage {
             put("<li>{}: {} <span class=\"soft\">({})</span></li>\n", html_text(range.parameter),
                 html_text(range.range), html_text(range.reason));
         }
-        put("</ul>\n<table>\n<thead><tr><th style=\"width:45%\">variation</th><th style=\"width:15%\">of the shipped "
-            "value</th><th>rows that change their verdict</th></tr></thead>\n<tbody>\n");
+        put("</ul>\n<table>\n<thead><tr><th style=\"width:20%\">variation</th><th "
+            "style=\"width:38%\">in the case file</th><th style=\"width:12%\">of the shipped value</th><th>rows that "
+            "change their verdict</th></tr></thead>\n<tbody>\n");
         for (const Variation& variation : variations) {
-            put("<tr><td>{}</td><td data-k=\"of the shipped value\">{}</td><td data-k=\"rows that change\">",
-                html_text(name_of(variation)),
+            put("<tr><td>{}</td><td data-k=\"in the case file\">{}</td><td data-k=\"of the shipped value\">{}</td><td "
+                "data-k=\"rows that change\">",
+                html_text(variation.symbol), html_text(name_of(variation)),
                 variation.parameter == "actuator.valve_model" ? "" : fmt::format("× {:.3g}", variation.factor));
             if (!variation.failure.empty()) {
                 put("no run: {}", html_text(variation.failure));
@@ -201,7 +212,7 @@ class Page : HtmlPage {
             put("</td></tr>\n");
         }
         put("</tbody>\n</table>\n<h3>Rows that change their verdict</h3>\n<table>\n<thead><tr><th "
-            "style=\"width:6rem\">row</th><th style=\"width:30%\">claim</th><th style=\"width:10rem\">as "
+            "style=\"width:8%\">row</th><th style=\"width:32%\">claim</th><th style=\"width:14%\">as "
             "shipped</th><th>turned by</th></tr></thead>\n<tbody>\n");
         for (const TurnedRow& turned : turned_) {
             const auto verdict = static_cast<std::size_t>(turned.row->verdict);
@@ -284,7 +295,7 @@ class Page : HtmlPage {
                   {R9_rate_m_s, "R9'", "mm/s", 1e3, "75"},
                   {q1_m, "q1", "mm", 1e3, "66, 76, 84"},
                   {q1_rate_m_s, "q1'", "mm/s", 1e3, "66, 76, 84"},
-                  {chord_m, "chord", "m", 1.0, "29, 78"},
+                  {chord_m, "chord, less the straight boom's length", "mm", 1e3, "29, 78"},
                   {pendent_tension_N, "pendent tension", "kN", 1e-3, "29, 78"},
                   {load_line_tension_N, "load line tension", "kN", 1e-3, "29, 78"},
                   {power_W, "hydraulic power", "kW", 1e-3, "68, 79, 85"},
@@ -302,7 +313,7 @@ class Page : HtmlPage {
                   {phi6_rad, "φ6", "mrad", 1e3, "26"},
                   {phi9_rad, "φ9", "mrad", 1e3, "27"},
                   {R9_m, "R9", "mm", 1e3, "28"},
-                  {chord_m, "chord", "m", 1.0, "29, 30"},
+                  {chord_m, "chord, less the straight boom's length", "mm", 1e3, "29, 30"},
                   {pendent_tension_N, "pendent tension", "kN", 1e-3, "29, 30"},
                   {load_line_tension_N, "load line tension", "kN", 1e-3, "29, 30"},
                   {R1_m, "R1", "mm", 1e3, "31", true},
@@ -326,7 +337,7 @@ class Page : HtmlPage {
                   {q1_rate_m_s, "q1'", "mm/s", 1e3, "42, 90"},
                   {q2_m, "q2", "mm", 1e3, "43"},
                   {q2_rate_m_s, "q2'", "mm/s", 1e3, "43"},
-                  {chord_m, "chord", "m", 1.0, "47, 91"},
+                  {chord_m, "chord, less the straight boom's length", "mm", 1e3, "47, 91"},
                   {pendent_tension_N, "pendent tension", "kN", 1e-3, "47, 91"},
                   {load_line_tension_N, "load line tension", "kN", 1e-3, "47, 91"},
                   {power_W, "hydraulic power", "kW", 1e-3, "92"},
@@ -351,7 +362,7 @@ class Page : HtmlPage {
                   {q1_rate_m_s, "q1'", "mm/s", 1e3, "53"},
                   {q2_m, "q2", "mm", 1e3, "54"},
                   {q2_rate_m_s, "q2'", "mm/s", 1e3, "54"},
-                  {chord_m, "chord", "m", 1.0, "59, 97"},
+                  {chord_m, "chord, less the straight boom's length", "mm", 1e3, "59, 97"},
                   {pendent_tension_N, "pendent tension", "kN", 1e-3, "59, 97"},
                   {load_line_tension_N, "load line tension", "kN", 1e-3, "59, 97"},
                   {power_W, "hydraulic power", "kW", 1e-3, "98"},
@@ -394,9 +405,13 @@ class Page : HtmlPage {
         const std::vector<double>& values =
             shown.spectrum ? look.run->spectrum(shown.signal).amplitude : look.run->signal(shown.signal);
         const double spacing = shown.spectrum ? look.run->spectrum(shown.signal).spacing_Hz : look.run->period_s();
+        // A chord is metres long and shortens by fractions of a millimetre.
+        const double from = shown.signal == Signal::chord_m && !shown.spectrum
+                                ? look.run->options().crane_case.crane.structure.boom_length_m
+                                : 0.0;
         for (std::size_t i = 0; i < values.size(); ++i) {
             curve.x.push_back(static_cast<double>(i) * spacing);
-            curve.y.push_back(shown.scale * values[i]);
+            curve.y.push_back(shown.scale * (values[i] - from));
         }
         return curve;
     }

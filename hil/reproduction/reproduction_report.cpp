@@ -76,6 +76,7 @@ nlohmann::ordered_json variation_json(const std::vector<Row>& rows, const Variat
     }
     return {{"parameter", variation.parameter},
             {"value", variation.value},
+            {"symbol", variation.symbol},
             {"factor", variation.factor},
             {"case", variation.case_name.empty() ? "all" : variation.case_name},
             {"failure", variation.failure},

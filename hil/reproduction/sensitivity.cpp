@@ -21,6 +21,7 @@ using plant::CraneParameters;
 /// Values that replace one number of the case file, or factors on it.
 struct Varied {
     std::string_view key;
+    std::string_view symbol;
     double& (*number)(CraneParameters&);
     std::vector<double> values;
     bool are_factors;
@@ -39,6 +40,7 @@ double& pendent_stiffness_N_m(CraneParameters& crane) {
 std::vector<Varied> varied() {
     return {
         {.key = "soil.poisson_ratio",
+         .symbol = "nu",
          .number = [](CraneParameters& crane) -> double& { return crane.soil.poisson_ratio; },
          .values = {0.20, 0.40, 0.49},
          .are_factors = false,
@@ -46,6 +48,7 @@ std::vector<Varied> varied() {
          .range = "0.20 to 0.49",
          .reason = "not in the thesis; dry sand to saturated clay, which hardly changes its volume"},
         {.key = "soil.density_kg_m3",
+         .symbol = "rho",
          .number = [](CraneParameters& crane) -> double& { return crane.soil.density_kg_m3; },
          .values = {1400.0, 2200.0},
          .are_factors = false,
@@ -53,6 +56,7 @@ std::vector<Varied> varied() {
          .range = "1400 to 2200 kg/m^3",
          .reason = "not in the thesis; loose dry sand to dense wet gravel"},
         {.key = "actuator.bulk_modulus_Pa",
+         .symbol = "beta_e",
          .number = [](CraneParameters& crane) -> double& { return crane.actuator.bulk_modulus_Pa; },
          .values = {0.25, 0.5, 2.0},
          .are_factors = true,
@@ -60,6 +64,7 @@ std::vector<Varied> varied() {
          .range = "a quarter to twice 700 MPa",
          .reason = "not in the thesis; from oil with trapped air and long hoses to plain mineral oil in steel"},
         {.key = pendent_key,
+         .symbol = "K_WRP",
          .number = pendent_stiffness_N_m,
          .values = {0.5, 0.75, 1.5, 2.0},
          .are_factors = true,
@@ -81,10 +86,11 @@ const CraneParameters& crane_of(const ThesisRuns& runs, std::string_view case_na
 
 std::vector<Job> all_jobs(const ThesisRuns& nominal) {
     std::vector<Job> jobs;
-    const auto add = [&](std::string_view key, std::string value, double factor, std::string_view case_name,
-                         std::function<void(CraneParameters&)> change) {
+    const auto add = [&](std::string_view key, std::string value, std::string symbol, double factor,
+                         std::string_view case_name, std::function<void(CraneParameters&)> change) {
         jobs.push_back({.variation = {.parameter = std::string(key),
                                       .value = std::move(value),
+                                      .symbol = std::move(symbol),
                                       .factor = factor,
                                       .case_name = std::string(case_name),
                                       .rows = {},
@@ -95,24 +101,25 @@ std::vector<Job> all_jobs(const ThesisRuns& nominal) {
         CraneParameters shipped = crane_of(nominal, case_name);
         const double before = one.number(shipped);
         const double after = is_factor ? value * before : value;
-        add(one.key, fmt::format("{:.4g}", after), after / before, case_name,
+        const std::string of = case_name == "case-b" ? " of B" : case_name == "case-c" ? " of C" : "";
+        add(one.key, fmt::format("{:.4g}", after),
+            fmt::format("{}{} {} {:g}", one.symbol, of, is_factor ? "x" : "=", value), after / before, case_name,
             [number = one.number, after](CraneParameters& crane) { number(crane) = after; });
     };
     for (const Varied& one : varied()) {
-        for (const double value : one.values) {
-            if (one.cases.empty()) {
-                add_number(one, value, one.are_factors, "");
-            }
-            for (const std::string_view case_name : one.cases) {
+        const std::vector<std::string_view> at_once{""};
+        for (const std::string_view case_name : one.cases.empty() ? at_once : one.cases) {
+            for (const double value : one.values) {
                 add_number(one, value, one.are_factors, case_name);
             }
-        }
-        if (one.key == pendent_key) {
-            add_number(one, printed_pendent_stiffness_b_N_m, false, "case-b");
-            add_number(one, printed_pendent_stiffness_c_N_m, false, "case-c");
+            if (one.key == pendent_key) {
+                add_number(one,
+                           case_name == "case-b" ? printed_pendent_stiffness_b_N_m : printed_pendent_stiffness_c_N_m,
+                           false, case_name);
+            }
         }
     }
-    add(valve_key, "nonlinear", 1.0, "",
+    add(valve_key, "nonlinear", "valve nonlinear", 1.0, "",
         [](CraneParameters& crane) { crane.actuator.valve_model = plant::ValveModel::nonlinear; });
     return jobs;
 }

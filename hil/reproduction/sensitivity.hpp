@@ -18,7 +18,8 @@ struct SensitivityRange {
 /// All claims, judged with one assumption changed.
 struct Variation {
     std::string parameter;  ///< key of the case file
-    std::string value;      ///< as it would stand there; a factor where the cases differ: "0.5 x"
+    std::string value;      ///< as it would stand there
+    std::string symbol;     ///< for a reader of the thesis: "nu = 0.2", "K_WRP of B x 0.5"
     double factor = 1.0;    ///< value over the shipped one; 1 for the valve model
     std::string case_name;  ///< whose runs were made anew; empty for all cases
     std::vector<Row> rows;  ///< as `judge` gives them; empty if there is no run

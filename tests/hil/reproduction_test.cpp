@@ -194,6 +194,7 @@ TEST(Reproduction, JsonAndPageHoldRunsConditioningMisprintsAndSensitivity) {
     const std::string page = page_of(rows(), appendix(), runs());
     EXPECT_NE(page.find("3.1.3-2 &lt;a&gt;"), std::string::npos);
     for (const Variation& variation : variations) {
+        EXPECT_NE(page.find(variation.symbol), std::string::npos) << variation.symbol;
         EXPECT_NE(page.find(name_of(variation)), std::string::npos) << name_of(variation);
     }
 }

@@ -42,12 +42,17 @@ TEST(Sensitivity, VariesEveryParameterThatHasARangeAndCountsTheVariations) {
     });
     EXPECT_EQ(calls, 19);
     std::set<std::string> names;
+    std::set<std::string> symbols;
     std::set<std::string> parameters;
     for (const Variation& one : sensitivity.variations) {
         EXPECT_TRUE(names.insert(name_of(one)).second) << name_of(one);
+        EXPECT_TRUE(symbols.insert(one.symbol).second) << one.symbol;
         parameters.insert(one.parameter);
     }
     EXPECT_EQ(names.size(), 19U);
+    for (const char* symbol : {"nu = 0.2", "beta_e x 0.25", "K_WRP of B x 0.5", "valve nonlinear"}) {
+        EXPECT_TRUE(symbols.contains(symbol)) << symbol;
+    }
     for (const SensitivityRange& range : sensitivity.ranges) {
         EXPECT_EQ(parameters.erase(range.parameter), 1U) << range.parameter;
         EXPECT_THAT(range.reason, Not(IsEmpty()));
@@ -99,6 +104,7 @@ TEST(Sensitivity, SofterPendentInCaseBMakesALaterShockOutdoTheFirstAndTurnsNothi
     sensitivity.variations.push_back(
         {.parameter = "ropes.pendent_stiffness_N_m",
          .value = "half",
+         .symbol = "K_WRP of B x 0.5",
          .case_name = "case-b",
          .rows = judge(
              rerun(runs, "case-b", [](plant::CraneParameters& crane) { crane.ropes.pendent_stiffness_N_m *= 0.5; })),

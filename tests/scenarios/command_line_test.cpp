@@ -153,6 +153,9 @@ TEST_F(CommandLine, BadInputEndsWithCodeTwoAndSaysWhatIsAllowed) {
         {"simulate case-a --csv x.csv --duration-s nan", "(0, 86400] s"},
         {"simulate case-a --csv x.csv --step-s -1", "(0, 0.1] s"},
         {"simulate case-a --csv x.csv --step-s 0.05 --duration-s 0.01", "no longer than the duration"},
+        {"simulate case-a --csv x.csv --tolerance 0.1", "[1e-13, 0.01] of the entry"},
+        {"simulate case-a --csv x.csv --tolerance 1e-6 --step-s 0.001", "--step-s"},
+        {"reproduce --nosuch", "--nosuch"},
         {"run case-a --rate-hz 10", "[50, 2000] Hz"},
         {"run case-a --rate-hz 2000", "70 %"},
         {"run case-a --mismatch soil.shear_modulus_Pa", "KEY=FACTOR"},
@@ -196,6 +199,30 @@ TEST_F(CommandLine, AnUnwritableFileFailsAndLeavesNothing) {
     const Outcome outcome = steadyboom("simulate case-a --duration-s 0.01 --csv /proc/nosuch/x.csv");
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_THAT(outcome.error, HasSubstr("/proc/nosuch"));
+}
+
+TEST_F(CommandLine, ReproduceSaysBeforeItsRunsThatItCannotWrite) {
+    std::ofstream(folder_ / "file") << "no folder";
+    for (const char* out : {"/proc/nosuch", "file", "file/below"}) {
+        const Outcome outcome = steadyboom(std::string("reproduce --out ") + out);
+        EXPECT_EQ(outcome.exit_code, 1) << out;
+        EXPECT_THAT(outcome.error, StartsWith(std::string("steadyboom: ") + out + ": cannot be written: "));
+        EXPECT_EQ(lines_of(outcome.error).size(), 1U) << outcome.error;
+        EXPECT_EQ(outcome.out, "") << out;
+    }
+    EXPECT_EQ(content(folder_ / "file"), "no folder");
+}
+
+TEST_F(CommandLine, ReproduceQuickPrintsEveryRowAsJsonAndItsProgressApart) {
+    const Outcome outcome = steadyboom("reproduce --quick --json --out DIR");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto document = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(document.at("rows").size(), document.at("counts").at("rows"));
+    EXPECT_EQ(document.at("conditioning").size(), 3U);
+    EXPECT_TRUE(document.at("sensitivity").at("variations").empty());
+    EXPECT_THAT(outcome.error, HasSubstr("case A, law 2 ..."));
+    EXPECT_EQ(content(folder_ / "DIR" / "reproduction.json"), outcome.out);
+    EXPECT_THAT(content(folder_ / "DIR" / "reproduction.html"), HasSubstr("</html>"));
 }
 
 TEST_F(CommandLine, ARunOnAnInterfaceThatIsNotThereSaysSo) {
