@@ -210,12 +210,12 @@ std::string number(const std::string& text) {
     return text.empty() ? "" : std::to_string(std::stoul(text, nullptr, 0));
 }
 
-TEST_F(CanTools, TsharkDecodesSyncNmtHeartbeatAndPdosOfARecordedRun) {
+TEST_F(CanTools, TsharkDecodesSyncNmtHeartbeatPdosAndSdoOfARecordedRun) {
     write("can.log", can_log(recorded_run().frames, "loopback"));
     const auto outcome = run(tshark("can.log",
                                     "-e canopen.cob_id -e canopen.nmt_ctrl.cd -e canopen.nmt_ctrl.node_id "
                                     "-e canopen.nmt_guard.state -e canopen.sync.counter -e canopen.pdo.data.bytes "
-                                    "-e _ws.malformed"));
+                                    "-e _ws.malformed -e canopen.sdo.main_idx -e canopen.sdo.sub_idx"));
     ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
     const auto rows = rows_of(outcome.out);
     const auto& frames = recorded_run().frames;
@@ -225,7 +225,7 @@ TEST_F(CanTools, TsharkDecodesSyncNmtHeartbeatAndPdosOfARecordedRun) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto& row = rows[i];
         const auto& frame = frames[i];
-        ASSERT_EQ(row.size(), 7U);
+        ASSERT_EQ(row.size(), 9U);
         ASSERT_EQ(number(row[0]), std::to_string(frame.id));
         ASSERT_EQ(row[6], "") << i;
         const auto kind = table.row(table.message_with(frame.id)).kind;
@@ -244,11 +244,18 @@ TEST_F(CanTools, TsharkDecodesSyncNmtHeartbeatAndPdosOfARecordedRun) {
             case drivers::MessageKind::pdo:
                 ASSERT_EQ(row[5], hex(frame));
                 break;
+            case drivers::MessageKind::sdo_request:
+            case drivers::MessageKind::sdo_answer:
+                ASSERT_EQ(number(row[7]), std::to_string(frame.data[1] + 256 * frame.data[2]));
+                ASSERT_EQ(number(row[8]), std::to_string(frame.data[3]));
+                break;
             default:
                 break;
         }
     }
     EXPECT_GE(seen[drivers::MessageKind::nmt], 1);
+    EXPECT_GT(seen[drivers::MessageKind::sdo_request], 10);
+    EXPECT_EQ(seen[drivers::MessageKind::sdo_answer], seen[drivers::MessageKind::sdo_request]);
     EXPECT_GT(seen[drivers::MessageKind::sync], 1000);
     EXPECT_GT(seen[drivers::MessageKind::heartbeat], 400);
     EXPECT_GT(seen[drivers::MessageKind::pdo], 10'000);
