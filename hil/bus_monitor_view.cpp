@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/pdo_codec.hpp"
+#include "drivers/sdo_abort.hpp"
+#include "drivers/sdo_format.hpp"
 
 namespace steadyboom::hil {
 
@@ -94,9 +96,37 @@ bool says_nothing(const BusMonitor& monitor, const MessageField& field, std::int
            });
 }
 
+/// "reads 1018h:01", "writes 1017h:00 = 0x64", "aborts 1000h:00, ..."
+std::string sdo_text(const drivers::CanFrame& frame) {
+    const auto specifier = drivers::sdo::specifier_of(frame.data[0]);
+    const std::string object = fmt::format("{:04X}h:{:02X}", frame.data[1] + 256U * frame.data[2], frame.data[3]);
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i > 0; --i) {
+        value = 256U * value + frame.data[3 + i];
+    }
+    if (specifier == drivers::sdo::abort_command) {
+        return fmt::format("aborts {}: {:#010x} {}", object, value,
+                           drivers::text_of(static_cast<drivers::SdoAbort>(value)));
+    }
+    const bool request = frame.id >= drivers::sdo_request_code;
+    if (request && specifier == drivers::sdo::upload_request) {
+        return "reads " + object;
+    }
+    if (request && specifier == drivers::sdo::download_request) {
+        return fmt::format("writes {} = {:#x}", object, value);
+    }
+    if (!request && specifier == drivers::sdo::upload_response) {
+        return fmt::format("{} is {:#x}", object, value);
+    }
+    return request ? fmt::format("command {:#04x}", frame.data[0]) : object + " is written";
+}
+
 /// The newest values of a message, protection left out.
 std::string values_text(const BusMonitor& monitor, const MessageRow& row) {
     const auto& newest = monitor.traffic(row.message).newest;
+    if (row.kind == MessageKind::sdo_request || row.kind == MessageKind::sdo_answer) {
+        return sdo_text(newest);
+    }
     std::string text;
     for (const auto& field : monitor.fields(row.message)) {
         const bool protection = row.kind == MessageKind::pdo && field.signal == Signal::none;
@@ -215,7 +245,7 @@ std::string monitor_text(const BusMonitor& monitor, const MonitorView& view) {
         }
         text += most.size() > 8 ? fmt::format(" and {} more\n", most.size() - 8) : "\n";
     }
-    text += fmt::format("\n{:<5}{:<24}{:>8}{:>9}  {}\n", "id", "message", "rate/s", "age", "newest values");
+    text += fmt::format("\n{:<5}{:<30}{:>8}{:>9}  {}\n", "id", "message", "rate/s", "age", "newest values");
 
     for (std::size_t i = 0; i < drivers::device_count; ++i) {
         const auto device = static_cast<Device>(i);
@@ -228,7 +258,7 @@ std::string monitor_text(const BusMonitor& monitor, const MonitorView& view) {
             }
             const bool heard = traffic.frames > 0;
             text += fmt::format(
-                "{:<5}{:<24}{:>8}{:>9}  ", hex_id(row.id, row.extended), row.name,
+                "{:<5}{:<30}{:>8}{:>9}  ", hex_id(row.id, row.extended), row.name,
                 heard ? fmt::format("{:.1f}", view.recent ? traffic.recent_rate_Hz : traffic.mean_rate_Hz()) : "",
                 heard ? age_text(view.now_ns - traffic.newest.stamp_ns) : "never");
             if (const auto trouble = trouble_text(traffic); !trouble.empty()) {

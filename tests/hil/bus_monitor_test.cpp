@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/pdo_codec.hpp"
+#include "drivers/sdo_abort.hpp"
 #include "hil/bus_monitor_view.hpp"
 #include "tests/hil/sample_networks.hpp"
 
@@ -126,6 +127,22 @@ TEST(BusMonitor, NodeStatesBootUpsAndEmergenciesAreTold) {
     EXPECT_THAT(text, HasSubstr("emergency 0x8130 " + std::string(drivers::emergency_text(0x8130)) +
                                 ", register 0x11, 250 ms ago, 1 in all"));
     EXPECT_THAT(text, HasSubstr("drum_encoder 0x1c: never heard"));
+}
+
+TEST(BusMonitor, TheLastSdoTransferIsToldInWords) {
+    const DeviceTable table(unprotected_network());
+    const auto shown_after = [&table](std::uint32_t id, std::array<std::uint8_t, 8> data) {
+        BusMonitor monitor(table);
+        monitor.take({.id = id, .length = 8, .data = data});
+        return monitor_text(monitor, {});
+    };
+    EXPECT_THAT(shown_after(0x614, {0x40, 0x18, 0x10, 1}), HasSubstr("reads 1018h:01\n"));
+    EXPECT_THAT(shown_after(0x594, {0x43, 0x18, 0x10, 1, 0x95, 1}), HasSubstr("1018h:01 is 0x195\n"));
+    EXPECT_THAT(shown_after(0x614, {0x2B, 0x17, 0x10, 0, 0x64}), HasSubstr("writes 1017h:00 = 0x64\n"));
+    EXPECT_THAT(shown_after(0x594, {0x60, 0x17, 0x10, 0}), HasSubstr("1017h:00 is written\n"));
+    EXPECT_THAT(
+        shown_after(0x594, {0x80, 0x17, 0x10, 0, 0, 0, 0x04, 0x05}),
+        HasSubstr("aborts 1017h:00: 0x05040000 " + std::string(text_of(static_cast<drivers::SdoAbort>(0x0504'0000)))));
 }
 
 /// A protected boom angle on each SYNC, of which `damage` may change what leaves.
