@@ -43,6 +43,19 @@ TEST(VirtualCrane, StandsStillAtEquilibrium) {
     }
 }
 
+TEST(VirtualCrane, StandsStillOnABeamBoomToo) {
+    for (const char name : {'A', 'B', 'C'}) {
+        CraneOnTheBus bench(with_spool(name), 1, 10, BoomKind::beam);
+        const CraneState start = bench.state();
+        EXPECT_EQ(start, bench.crane.equilibrium().state);
+        EXPECT_GT(start[q1_m], 5.0 * CraneOnTheBus(with_spool(name)).state()[q1_m]) << "the beam sags more";
+        for (int tick = 0; tick < 10 * ticks_per_s; ++tick) {
+            (void)bench.tick();
+        }
+        EXPECT_LT((bench.state() - start).cwiseAbs().maxCoeff(), 1e-9) << name;
+    }
+}
+
 TEST(VirtualCrane, BrakeSetsTheLineRateAndNothingElse) {
     CraneOnTheBus bench(with_spool());
     CraneState expected = bench.state();
@@ -288,12 +301,14 @@ TEST(VirtualCrane, SlackRopesReadZeroAndNeverLess) {
 }
 
 TEST(VirtualCrane, AllocatesNothingOnceItStands) {
-    CraneOnTheBus bench(with_spool());
-    bench.start();
-    const runtime::RealtimeSection no_allocation;
-    bench.crane.brake(brake_rate_m_s);
-    for (int tick = 0; tick < ticks_per_s; ++tick) {
-        (void)bench.tick(1e-3, CraneOnTheBus::engaged);
+    for (const BoomKind boom : {BoomKind::links, BoomKind::beam}) {
+        CraneOnTheBus bench(with_spool(), 1, 10, boom);
+        bench.start();
+        const runtime::RealtimeSection no_allocation;
+        bench.crane.brake(brake_rate_m_s);
+        for (int tick = 0; tick < ticks_per_s; ++tick) {
+            (void)bench.tick(1e-3, CraneOnTheBus::engaged);
+        }
     }
 }
 

@@ -106,6 +106,32 @@ TEST_F(CommandLine, EquilibriumPrintsAnglesAndModesAsJson) {
     EXPECT_LE(json.at("residual").get<double>(), 1e-12);
 }
 
+TEST_F(CommandLine, BoomIsTheCasesOwnUnlessTheOptionSaysAnother) {
+    const auto sag_m = [&](const std::string& arguments, const std::string& boom) {
+        const Outcome outcome = steadyboom("equilibrium " + arguments + " --json");
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
+        const auto json = nlohmann::json::parse(outcome.out);
+        EXPECT_EQ(json.at("boom"), boom);
+        EXPECT_EQ(json.at("modes").size(), boom == "beam" ? 8U : 7U);
+        return json.at("q1_m").get<double>();
+    };
+    const double links_m = sag_m("case-a", "links");
+    const double beam_m = sag_m("case-a --boom beam", "beam");
+    EXPECT_GT(beam_m, 5.0 * links_m);
+    std::string file = content(steadyboom::hil::find_case("case-a"));
+    file.replace(file.find("\"links\""), 7, "\"beam\"");
+    std::ofstream(folder_ / "beam.toml") << file;
+    EXPECT_EQ(sag_m("beam.toml", "beam"), beam_m);
+    EXPECT_EQ(sag_m("beam.toml --boom links", "links"), links_m);
+
+    const Outcome run = steadyboom("run case-a --boom beam --law none --duration-s 1 --json");
+    ASSERT_EQ(run.exit_code, 0) << run.error;
+    EXPECT_EQ(nlohmann::json::parse(run.out).at("boom"), "beam");
+    ASSERT_EQ(steadyboom("simulate case-a --duration-s 0.1 --csv links.csv").exit_code, 0);
+    ASSERT_EQ(steadyboom("simulate case-a --boom beam --duration-s 0.1 --csv beam.csv").exit_code, 0);
+    EXPECT_NE(content(folder_ / "links.csv"), content(folder_ / "beam.csv"));
+}
+
 TEST_F(CommandLine, RunPrintsTheFiguresUnderStableKeysAndWritesTheRunFolder) {
     const Outcome outcome = steadyboom("run case-a --law joint-deflection --duration-s 2 --json --out run");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
@@ -149,6 +175,7 @@ TEST_F(CommandLine, BadInputEndsWithCodeTwoAndSaysWhatIsAllowed) {
         {"simulate case-a", "--csv"},
         {"simulate case-z --csv x.csv", "case-a, case-b, case-c"},
         {"simulate case-a --csv x.csv --law nosuch", "joint-deflection"},
+        {"equilibrium case-a --boom tube", "\"tube\": must be links or beam"},
         {"simulate case-a --csv x.csv --duration-s 0", "(0, 86400] s"},
         {"simulate case-a --csv x.csv --duration-s nan", "(0, 86400] s"},
         {"simulate case-a --csv x.csv --step-s -1", "(0, 0.1] s"},

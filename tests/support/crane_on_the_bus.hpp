@@ -20,8 +20,10 @@ class CraneOnTheBus {
     static constexpr plant::Permission engaged{
         .mode = plant::ValveMode::active, .cutoff_energised = true, .authority = 1.0};
 
-    explicit CraneOnTheBus(const plant::CraneParameters& parameters, std::uint64_t seed = 1, int steps_per_tick = 10)
+    explicit CraneOnTheBus(const plant::CraneParameters& parameters, std::uint64_t seed = 1, int steps_per_tick = 10,
+                           hil::BoomKind boom = hil::BoomKind::links)
         : crane({.crane = parameters,
+                 .boom = boom,
                  .network = {.spool_travel_m = parameters.actuator.spool_travel_m, .period_ns = period_ns},
                  .step_s = 1e-9 * static_cast<double>(period_ns) / steps_per_tick,
                  .seed = seed}),

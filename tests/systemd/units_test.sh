@@ -113,6 +113,12 @@ ControllerRunsUnderItsUnitWithRealTimePriorityAndNoPrivilege() {
         ' bash "$stage" || refute "status $?"
 }
 
+# The beam is for the virtual crane; the observer models the links.
+ControllerCarriesNoBeamBoom() {
+    nm -C "$build/bin/steadyboom-plant" | grep -q 'plant::BeamBoom' || refute "no such symbol to look for"
+    ! nm -C "$build/bin/steadyboom-controller" | grep 'plant::BeamBoom' || refute "the controller carries it"
+}
+
 declare -F -- "$claim" >/dev/null && [[ $claim =~ ^[A-Z] ]] || refute "no such claim: $claim"
 [ -d "$build" ] || refute "no build directory: $build"
 "$claim"
