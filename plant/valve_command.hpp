@@ -20,7 +20,7 @@ enum LimitReason : std::uint32_t {
     limit_guard = 1U << 5,          ///< the guard rejected the command: neutral
 };
 
-/// Control word of a CiA 408 valve: what the valve is asked to be.
+/// What the valve is asked to be. Each value is the ValveState that it leads to; how a valve is asked is its driver's.
 enum class ValveMode : std::uint8_t {
     disabled = 0b0000'1001,  ///< D and R
     hold = 0b0000'1011,      ///< D, H and R

@@ -124,13 +124,13 @@ TEST_F(RunOnVcan, AControllerWithoutACraneStaysSilentToTheValve) {
     candump.signal(SIGINT);
     candump.wait();
 
-    // It commanded, and never anything but: valve disabled (control word 9), set-point 0, cut-off closed.
+    // It commanded, and never anything but: valve disabled (control word 1), set-point 0, cut-off closed.
     std::ifstream log(folder_ / "candump.log");
     int orders = 0;
     for (std::string stamp, interface, frame; log >> stamp >> interface >> frame;) {
         if (frame.starts_with("220#")) {
             ++orders;
-            EXPECT_EQ(frame.substr(0, 12), "220#09000000") << frame;
+            EXPECT_EQ(frame.substr(0, 12), "220#01000000") << frame;
         }
         if (frame.starts_with("228#")) {
             EXPECT_EQ(frame.substr(0, 6), "228#00") << frame;
