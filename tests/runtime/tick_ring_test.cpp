@@ -246,7 +246,8 @@ TEST_F(TickRing, ReadersSayWhatIsWrongWithTheFile) {
     expect_error(open, "is no tick ring");
 
     { const TickRingWriter<TickRecord> other_record(path_, small_); }
-    expect_error(open, "holds records of version 1 with " + std::to_string(sizeof(TickRecord)) +
+    expect_error(open, "holds records of version " + std::to_string(TickRecord::layout_version) + " with " +
+                           std::to_string(sizeof(TickRecord)) +
                            " bytes, this program reads version 7 with 480 bytes; run both from one release");
 
     { const TickRingWriter<Numbered> writer(path_, small_); }
