@@ -10,6 +10,7 @@
 #include "hil/plant_config.hpp"
 #include "hil/plant_record.hpp"
 #include "hil/virtual_crane.hpp"
+#include "runtime/bus_tender.hpp"
 #include "runtime/periodic_loop.hpp"
 #include "runtime/realtime_thread.hpp"
 #include "runtime/service_program.hpp"
@@ -52,7 +53,8 @@ int stand_in_for_the_crane(const hil::PlantConfig& config) {
                              .network = config.network,
                              .step_s = 1e-9 * static_cast<double>(step_ns),
                              .seed = static_cast<std::uint64_t>(config.seed)});
-    drivers::SocketCanBus bus(config.interface, {.filters = crane.network().filters()});
+    drivers::SocketCanBus bus(config.interface, {.filters = crane.network().filters(), .expect_remote = false});
+    const runtime::BusTender tender(bus);
     runtime::TickRingWriter<hil::PlantRecord> ring(config.ring_path,
                                                    {.capacity_records = 1 << 15, .period_ns = step_ns});
 

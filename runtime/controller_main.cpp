@@ -10,6 +10,7 @@
 #include <systemd/sd-daemon.h>
 
 #include "drivers/socketcan_bus.hpp"
+#include "runtime/bus_tender.hpp"
 #include "runtime/can_link/link_watch.hpp"
 #include "runtime/control_tick.hpp"
 #include "runtime/controller_config.hpp"
@@ -110,12 +111,7 @@ class Supervisor {
 int control(const runtime::ControllerConfig& config) {
     drivers::CraneNetwork network(tick_config(config).network);
     drivers::SocketCanBus bus(config.interface, {.filters = network.filters(), .expect_remote = config.expect_remote});
-    const runtime::HelperThread bus_tender("bus", [&bus](const std::stop_token& stop) {
-        while (!stop.stop_requested()) {
-            bus.tend();
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        }
-    });
+    const runtime::BusTender tender(bus);
     runtime::MonotonicClock clock;
     runtime::OperatorMailbox mailbox;
     runtime::TickRingWriter<runtime::TickRecord> ring(

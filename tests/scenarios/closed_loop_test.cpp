@@ -1,11 +1,16 @@
 // The closed loop as it ships, in lockstep: virtual crane, frames, control tick. The allocation guard of tests/support
 // is active in every tick.
+#include <linux/can/error.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -170,6 +175,67 @@ TEST(ClosedLoop, SilenceOfAllDevicesLocksThePiston) {
     EXPECT_EQ(static_cast<InterlockState>(record.interlock_state), InterlockState::fault_hold);
     EXPECT_EQ(record.applied_opening_m, 0.0);
     EXPECT_FALSE(bench.crane().valve().cutoff_open());
+}
+
+/// The bench in command, then what comes from the bus beside the crane; the record of the tick that reads it.
+const runtime::TickRecord& tick_after(hil::LockstepBench& bench, std::span<const drivers::CanFrame> frames) {
+    while (bench.next_t_s() < 0.3) {
+        bench.step();
+    }
+    EXPECT_EQ(static_cast<InterlockState>(bench.ticks().back().record.interlock_state), InterlockState::active);
+    EXPECT_NE(bench.ticks().back().record.applied_opening_m, 0.0);
+    (void)bench.bus().endpoint(1).send(frames);
+    bench.step();
+    return bench.ticks().back().record;
+}
+
+drivers::CanFrame error_message(std::uint32_t error_class, std::uint8_t controller) {
+    return {.id = error_class, .length = 8, .data = {0, controller, 0, 0, 0, 0, 120, 130}, .error = true};
+}
+
+TEST(ClosedLoop, BusOffIsNeutralInTheTickThatReadsOfIt) {
+    hil::LockstepBench bench(options_for("case-a", LawKind::joint_deflection));
+    const runtime::TickRecord& record = tick_after(bench, std::array{error_message(CAN_ERR_BUSOFF, 0)});
+    EXPECT_EQ(static_cast<InterlockState>(record.interlock_state), InterlockState::fault_hold);
+    EXPECT_NE(record.permission_reasons & controllers::reason_bus_off, 0U);
+    EXPECT_EQ(record.applied_opening_m, 0.0);
+    EXPECT_EQ(record.cutoff_energised, 0);
+}
+
+TEST(ClosedLoop, FloodBeginsTheRampInTheTickThatReadsIt) {
+    hil::LockstepBench bench(options_for("case-a", LawKind::joint_deflection));
+    const std::vector<drivers::CanFrame> flood(drivers::flood_frames, {.id = 0x7AA, .length = 8});
+    const runtime::TickRecord& record = tick_after(bench, flood);
+    EXPECT_EQ(static_cast<InterlockState>(record.interlock_state), InterlockState::stopping);
+    EXPECT_NE(record.permission_reasons & controllers::reason_flood, 0U);
+    for (int tick = 0; tick < 20; ++tick) {
+        bench.step();
+    }
+    EXPECT_EQ(static_cast<InterlockState>(bench.ticks().back().record.interlock_state), InterlockState::fault_hold);
+}
+
+TEST(ClosedLoop, ErrorPassiveLeaves15PercentOfAuthorityAndGivesItBack) {
+    hil::LockstepBench bench(options_for("case-a", LawKind::joint_deflection));
+    const runtime::TickRecord& first = tick_after(bench, std::array{error_message(CAN_ERR_CRTL | CAN_ERR_CNT, 0x20)});
+    EXPECT_EQ(static_cast<InterlockState>(first.interlock_state), InterlockState::limited);
+    EXPECT_EQ(first.link_state, static_cast<std::uint8_t>(drivers::LinkState::passive));
+    EXPECT_EQ(first.transmit_error_count, 120);
+    EXPECT_LT(first.authority, 1.0);
+    for (int tick = 0; tick < 100; ++tick) {
+        bench.step();
+    }
+    EXPECT_NEAR(bench.ticks().back().record.authority, 0.15, 1e-12);
+    EXPECT_LE(std::abs(bench.ticks().back().record.limited_opening_m),
+              0.15 * std::abs(bench.ticks().back().record.wanted_opening_m) + 1e-12);
+    (void)bench.bus().endpoint(1).send(std::array{error_message(CAN_ERR_CRTL, 0x08)});
+    bench.step();
+    EXPECT_EQ(static_cast<InterlockState>(bench.ticks().back().record.interlock_state), InterlockState::engaging);
+    EXPECT_NE(bench.ticks().back().record.permission_reasons & controllers::reason_error_warning, 0U) << "shown";
+    for (int tick = 0; tick < 100; ++tick) {
+        bench.step();
+    }
+    EXPECT_EQ(static_cast<InterlockState>(bench.ticks().back().record.interlock_state), InterlockState::active)
+        << "a warning alone takes nothing away";
 }
 
 TEST(ClosedLoop, AMismatchFalsifiesTheControllersCopyAlone) {
