@@ -100,7 +100,7 @@ void print_json(const std::vector<Result>& results, const Machine& machine) {
 std::vector<Row> all_rows() {
     std::vector<Row> rows;
     for (const std::vector<Row>& part :
-         {dynamics_rows(), integration_rows(), lockstep_rows(), network_rows(), telemetry_rows()}) {
+         {dynamics_rows(), integration_rows(), lockstep_rows(), network_rows(), telemetry_rows(), bus_rows()}) {
         rows.insert(rows.end(), part.begin(), part.end());
     }
     return rows;

@@ -58,5 +58,6 @@ enum class Verdict { aim, must, missed, absent, disagree };
 [[nodiscard]] std::vector<Row> lockstep_rows();
 [[nodiscard]] std::vector<Row> network_rows();
 [[nodiscard]] std::vector<Row> telemetry_rows();
+[[nodiscard]] std::vector<Row> bus_rows();
 
 }  // namespace steadyboom::hil::benchmark

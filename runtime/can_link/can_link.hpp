@@ -10,7 +10,7 @@ namespace steadyboom::runtime {
 /// What the configuration asks of an interface.
 struct LinkSetUp {
     std::uint32_t bit_rate_bit_s = 500'000;
-    std::uint32_t queue_frames = 4;  ///< one tick's frames
+    std::uint32_t queue_frames = 5;  ///< one tick's frames, DeviceTable::most_frames_a_tick()
 };
 
 /// One interface as the kernel shows it by libsocketcan, whose calls take milliseconds: not for the tick. A virtual

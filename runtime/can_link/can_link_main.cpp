@@ -7,7 +7,7 @@
 #include <systemd/sd-daemon.h>
 #include <CLI/CLI.hpp>
 
-#include "drivers/crane_network.hpp"
+#include "drivers/device_table.hpp"
 #include "runtime/can_link/can_link.hpp"
 #include "runtime/can_link/link_server.hpp"
 #include "runtime/clock.hpp"
@@ -25,8 +25,10 @@ int look_after(const runtime::ControllerConfig& config) {
     if (config.link_socket_path.empty()) {
         throw runtime::ConfigError("bus.link_socket_path is empty: name the socket to report at");
     }
-    runtime::CanLink link(config.interface, {.bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s),
-                                             .queue_frames = drivers::CraneNetwork::most_frames});
+    runtime::CanLink link(
+        config.interface,
+        {.bit_rate_bit_s = static_cast<std::uint32_t>(config.bit_rate_bit_s),
+         .queue_frames = static_cast<std::uint32_t>(drivers::DeviceTable(config.network).most_frames_a_tick())});
     runtime::MonotonicClock clock;
     runtime::LinkServer server(
         {.socket_path = config.link_socket_path,

@@ -68,7 +68,7 @@ TEST(Benchmark, RunsEveryRowAndItsPeersAgreeWithUs) {
         EXPECT_EQ(verdict, reaches_aim ? "aim met" : reaches_must ? "must met" : "MISSED") << row;
     }
     EXPECT_THAT(names, testing::IsSupersetOf({"right-hand-side", "rk4-step", "mass-matrix", "odeint", "gsl", "scipy",
-                                              "lockstep", "network", "ring-push"}));
+                                              "lockstep", "network", "ring-push", "receive", "batched-io"}));
 }
 
 TEST(Benchmark, PrintsATableOfTheRowsAskedFor) {

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "controllers/interlock.hpp"
+#include "drivers/crane_network.hpp"
 #include "drivers/socketcan_bus.hpp"
 #include "runtime/can_link/can_link.hpp"
 #include "runtime/controller_config.hpp"
@@ -40,7 +41,7 @@ class Slcan : public testing::Test {
   protected:
     void SetUp() override {
         ASSERT_EQ(can_set_bitrate(name().c_str(), 500'000), 0);
-        run("ip link set " + name() + " txqueuelen 4 up");
+        run("ip link set " + name() + " txqueuelen " + std::to_string(drivers::CraneNetwork::most_frames) + " up");
         ASSERT_TRUE(eventually([&] { return adapter.count("O") == 1; }));
     }
 
@@ -57,7 +58,7 @@ class Slcan : public testing::Test {
     std::array<CanFrame, 512> frames;
 
   private:
-    runtime::CanLink can_link_{name(), {.bit_rate_bit_s = 500'000, .queue_frames = 4}};
+    runtime::CanLink can_link_{name(), {.bit_rate_bit_s = 500'000, .queue_frames = drivers::CraneNetwork::most_frames}};
 };
 
 TEST_F(Slcan, BitRateSetByLibsocketcanReachesTheAdapterAndIsReadBack) {
@@ -65,13 +66,14 @@ TEST_F(Slcan, BitRateSetByLibsocketcanReachesTheAdapterAndIsReadBack) {
     const auto report = link();
     EXPECT_EQ(report.bit_rate_bit_s, 500'000U);
     EXPECT_EQ(report.condition, LinkCondition::active);
-    EXPECT_EQ(report.queue_frames, 4U);
+    EXPECT_EQ(report.queue_frames, drivers::CraneNetwork::most_frames);
     EXPECT_EQ(report.problems, runtime::link_problem_none) << link_in_words({});
     EXPECT_FALSE(report.virtual_bus);
 }
 
 TEST_F(Slcan, WhatDiffersFromTheConfigurationIsNamedWithTheCommandThatHelps) {
-    EXPECT_THAT(link_in_words({.bit_rate_bit_s = 250'000, .queue_frames = 4}), HasSubstr("type can bitrate 250000"));
+    EXPECT_THAT(link_in_words({.bit_rate_bit_s = 250'000, .queue_frames = drivers::CraneNetwork::most_frames}),
+                HasSubstr("type can bitrate 250000"));
     EXPECT_THAT(link_in_words({.bit_rate_bit_s = 500'000, .queue_frames = 7}), HasSubstr("txqueuelen 7"));
     EXPECT_EQ(runtime::CanLink("steady9", {}).read().condition, LinkCondition::absent);
     run("ip link set " + name() + " down");
