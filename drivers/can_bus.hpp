@@ -49,7 +49,7 @@ struct BusStatus {
     LinkState link = LinkState::active;
     std::uint8_t transmit_error_count = 0;  ///< of the controller, by the newest error message that had it
     std::uint8_t receive_error_count = 0;
-    std::int64_t newest_kernel_stamp_ns = 0;  ///< CanFrame::kernel_stamp_ns of the newest frame
+    std::int64_t newest_kernel_stamp_ns = 0;  ///< wall-clock time of the newest frame's receipt, for records only
 
     std::uint64_t received_frames = 0;  ///< error messages included
     std::uint64_t sent_frames = 0;

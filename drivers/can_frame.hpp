@@ -14,7 +14,6 @@ struct CanFrame {
     bool remote = false;                 ///< remote transmission request
     bool error = false;                  ///< not a frame on the bus: the interface reports an error
     std::int64_t stamp_ns = 0;           ///< steady time of receipt; on frames to be sent, steady time of encoding
-    std::int64_t kernel_stamp_ns = 0;    ///< wall-clock time of receipt by the kernel, for records only; 0: not known
 };
 
 inline constexpr std::uint32_t standard_id_count = 2048;  ///< 11-bit identifiers

@@ -48,6 +48,13 @@ std::int64_t steady_now_ns() noexcept {
     return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
+/// Of the frame read last. One question for all that a call has read costs less than SO_TIMESTAMPNS, which adds a
+/// control message to each frame.
+std::int64_t newest_kernel_stamp_ns(int fd) noexcept {
+    timespec stamp{};
+    return ::ioctl(fd, SIOCGSTAMPNS, &stamp) == 0 ? std::int64_t{stamp.tv_sec} * 1'000'000'000 + stamp.tv_nsec : 0;
+}
+
 CanFrame from_kernel(const can_frame& raw, std::int64_t stamp_ns) noexcept {
     CanFrame frame;
     frame.extended = (raw.can_id & CAN_EFF_FLAG) != 0;
@@ -140,10 +147,10 @@ std::pair<int, int> open_socket(const std::string& interface, const SocketCanOpt
     }
     // Own frames do not come back (CAN_RAW_RECV_OWN_MSGS is off by default): an echo is no proof of transmission.
     const can_err_mask_t errors = options.error_messages ? CAN_ERR_MASK : 0U;
-    if (!socket.set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) || !socket.set(SOL_SOCKET, SO_RXQ_OVFL, 1) ||
-        !socket.set(SOL_SOCKET, SO_TIMESTAMPNS, 1)) {
+    if (!socket.set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) || !socket.set(SOL_SOCKET, SO_RXQ_OVFL, 1)) {
         fail(interface, "the kernel refuses a socket option (" + reason(errno) + "): Linux 5.10 or newer is needed");
     }
+    (void)newest_kernel_stamp_ns(socket.fd());  // the first question makes the kernel note them
     const int asked_bytes = options.receive_buffer_frames * kernel_bytes_per_frame / 2;  // the kernel doubles it
     if (!socket.set(SOL_SOCKET, SO_RCVBUFFORCE, asked_bytes) && !socket.set(SOL_SOCKET, SO_RCVBUF, asked_bytes)) {
         fail(interface, "the kernel refuses a receive buffer (" + reason(errno) + ")");
@@ -183,7 +190,7 @@ bool is_virtual_driver(const std::string& driver) noexcept {
 /// What recvmmsg and sendmmsg point into; wired once.
 struct SocketCanBus::Buffers {
     struct Control {
-        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t)) + CMSG_SPACE(sizeof(timespec))> bytes;
+        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t))> bytes;
     };
 
     Buffers() {
@@ -225,6 +232,7 @@ std::size_t SocketCanBus::receive(std::span<CanFrame> into) noexcept {
     take_over_fresh_socket();
     std::size_t filled = 0;
     std::size_t found = 0;
+    std::int64_t stamp_ns = 0;
     while (filled < into.size()) {
         const auto wanted = std::min(batch_frames, into.size() - filled);
         for (std::size_t i = 0; i < wanted; ++i) {
@@ -238,7 +246,9 @@ std::size_t SocketCanBus::receive(std::span<CanFrame> into) noexcept {
             }
             break;
         }
-        const auto stamp_ns = steady_now_ns();
+        if (found == 0) {
+            stamp_ns = steady_now_ns();  // one for all: where there is no vDSO a clock costs as much as a batch
+        }
         found += static_cast<std::size_t>(count);
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
             filled += accept(i, stamp_ns, into[filled]) ? 1U : 0U;
@@ -248,30 +258,24 @@ std::size_t SocketCanBus::receive(std::span<CanFrame> into) noexcept {
             break;
         }
     }
+    if (found > 0) {
+        status_.newest_kernel_stamp_ns = newest_kernel_stamp_ns(fd_);
+    }
     status_.floods += found > flood_frames ? 1U : 0U;
     return filled;
 }
 
 bool SocketCanBus::accept(std::size_t index, std::int64_t stamp_ns, CanFrame& into) noexcept {
     auto& message = buffers_->receive_messages[index];
-    std::int64_t kernel_stamp_ns = 0;
     for (auto* control = CMSG_FIRSTHDR(&message.msg_hdr); control != nullptr;
          control = CMSG_NXTHDR(&message.msg_hdr, control)) {
-        if (control->cmsg_level != SOL_SOCKET) {
-            continue;
-        }
-        if (control->cmsg_type == SO_RXQ_OVFL) {
+        if (control->cmsg_level == SOL_SOCKET && control->cmsg_type == SO_RXQ_OVFL) {
             std::uint32_t socket_total = 0;
             std::memcpy(&socket_total, CMSG_DATA(control), sizeof socket_total);
             note_overflow(socket_total);
-        } else if (control->cmsg_type == SCM_TIMESTAMPNS) {
-            timespec stamp{};
-            std::memcpy(&stamp, CMSG_DATA(control), sizeof stamp);
-            kernel_stamp_ns = std::int64_t{stamp.tv_sec} * 1'000'000'000 + stamp.tv_nsec;
         }
     }
     ++status_.received_frames;
-    status_.newest_kernel_stamp_ns = kernel_stamp_ns;
     if (message.msg_len != CAN_MTU) {
         ++status_.malformed_frames;
         return false;
@@ -283,7 +287,6 @@ bool SocketCanBus::accept(std::size_t index, std::int64_t stamp_ns, CanFrame& in
         return false;
     }
     into = from_kernel(buffers_->receive_frames[index], stamp_ns);
-    into.kernel_stamp_ns = kernel_stamp_ns;
     if (into.error) {
         note_error_message(into, status_);
     } else if (status_.link == LinkState::bus_off) {
