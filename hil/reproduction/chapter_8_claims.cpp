@@ -115,7 +115,7 @@ std::vector<Claim> chapter_8_claims() {
                      larger("law 3", piston_over_soil(r.a3))};
          }},
         {"8-14", "8", "63, 64, 81, 82", "With laws 1 and 3 the tracks move and rotate more than without", "larger",
-         "The first peak would have to be enlarged by every one of them; the late motion is smaller with both",
+         "The first peak would have to be enlarged by every one of them",
          [](const ThesisRuns& r) -> Measures {
              return {larger("largest R1, law 1 over none", peak(r.a1, R1_m) / peak(r.a, R1_m)),
                      larger("largest phi2, law 1 over none", peak(r.a1, phi2_rad) / peak(r.a, phi2_rad)),
