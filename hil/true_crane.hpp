@@ -23,9 +23,11 @@ class TrueCrane {
     [[nodiscard]] TruthSample sample(const plant::StateOf<Boom>& state, double spool_m, double t_s) const noexcept;
 
   private:
+    using Layout = typename plant::CraneDynamicsOf<Boom>::Layout;
     plant::CraneDynamicsOf<Boom> dynamics_;
     plant::EquilibriumOf<Boom> equilibrium_;
     plant::ResidualEnergyOf<Boom> energy_;
+    Eigen::Matrix<double, Boom::coordinate_count, Boom::coordinate_count> boom_mass_;  ///< at the equilibrium
 };
 
 /// TrueCrane::thesis_equilibrium of the crane of a case. Throws plant::EquilibriumError.

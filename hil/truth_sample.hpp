@@ -16,6 +16,7 @@ struct TruthSample {
     double load_pressure_Pa = 0.0;
     double hydraulic_power_W = 0.0;  ///< (P_L - P_L0) K_q X_v, model page section 4
     double residual_energy_J = 0.0;  ///< plant::ResidualEnergyOf, of all the boom's own coordinates
+    double boom_energy_J = 0.0;      ///< bending and motion of the boom's own coordinates, about the equilibrium
 };
 
 }  // namespace steadyboom::hil

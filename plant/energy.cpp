@@ -31,11 +31,17 @@ double potential_energy_J(const CraneDynamicsOf<Boom>& crane, const StateOf<Boom
            spring_J(outputs.pendent_tension_N, parameters.ropes.pendent_stiffness_N_m);
 }
 
-template <class Boom>
-double full_contact_energy_J(const CraneDynamicsOf<Boom>& crane, const StateOf<Boom>& state) {
-    const Soil::Coefficients soil = crane.soil().coefficients(1.0);
-    return 0.5 * soil.vertical_stiffness_N_m * state[R1_m] * state[R1_m] +
-           0.5 * soil.rocking_stiffness_N_m_rad * state[phi2_rad] * state[phi2_rad];
+double full_contact_energy_J(const Soil& soil, double height_m, double tilt_rad) noexcept {
+    const Soil::Coefficients full = soil.coefficients(1.0);
+    return 0.5 * full.vertical_stiffness_N_m * height_m * height_m +
+           0.5 * full.rocking_stiffness_N_m_rad * tilt_rad * tilt_rad;
+}
+
+double soil_power_W(const Soil& soil, double height_m, double tilt_rad, double height_rate_m_s,
+                    double tilt_rate_rad_s) noexcept {
+    const SoilReaction reaction =
+        soil.reaction(height_m, tilt_rad, std::sin(tilt_rad), height_rate_m_s, tilt_rate_rad_s);
+    return reaction.vertical_N * height_rate_m_s + reaction.rocking_N_m * tilt_rate_rad_s;
 }
 
 template <class Boom>
@@ -50,15 +56,13 @@ NonConservativePower non_conservative_power(const CraneDynamicsOf<Boom>& crane, 
                                             double valve_opening_m) {
     const typename CraneDynamicsOf<Boom>::Coordinates v = velocities_of(state);
     const CraneOutputs outputs = crane.outputs(state);
-    const SoilReaction soil =
-        crane.soil().reaction(state[R1_m], state[phi2_rad], std::sin(state[phi2_rad]), v[R1_m], v[phi2_rad]);
     const double piston_rate_m_s =
         crane.actuator().piston_rate_m_s(valve_opening_m, outputs.pendent_tension_N, outputs.pendent_rate_m_s,
                                          state[CraneDynamicsOf<Boom>::Layout::piston_index]);
     const typename Boom::Vector boom_rate =
         v.template segment<Boom::coordinate_count>(CraneDynamicsOf<Boom>::Layout::boom_index);
     return {.boom_damping_W = crane.boom().damping_force_N(boom_rate).dot(boom_rate),
-            .soil_W = soil.vertical_N * v[R1_m] + soil.rocking_N_m * v[phi2_rad],
+            .soil_W = soil_power_W(crane.soil(), state[R1_m], state[phi2_rad], v[R1_m], v[phi2_rad]),
             .piston_W = outputs.pendent_tension_N * piston_rate_m_s};
 }
 
@@ -77,14 +81,12 @@ double ResidualEnergyOf<Boom>::energy_J(const StateOf<Boom>& state) const noexce
 
 template double kinetic_energy_J(const CraneDynamicsOf<LinkBoom>&, const StateOf<LinkBoom>&);
 template double potential_energy_J(const CraneDynamicsOf<LinkBoom>&, const StateOf<LinkBoom>&);
-template double full_contact_energy_J(const CraneDynamicsOf<LinkBoom>&, const StateOf<LinkBoom>&);
 template double oil_energy_J(const CraneDynamicsOf<LinkBoom>&, const StateOf<LinkBoom>&);
 template NonConservativePower non_conservative_power(const CraneDynamicsOf<LinkBoom>&, const StateOf<LinkBoom>&,
                                                      double);
 template class ResidualEnergyOf<LinkBoom>;
 template double kinetic_energy_J(const CraneDynamicsOf<BeamBoom>&, const StateOf<BeamBoom>&);
 template double potential_energy_J(const CraneDynamicsOf<BeamBoom>&, const StateOf<BeamBoom>&);
-template double full_contact_energy_J(const CraneDynamicsOf<BeamBoom>&, const StateOf<BeamBoom>&);
 template double oil_energy_J(const CraneDynamicsOf<BeamBoom>&, const StateOf<BeamBoom>&);
 template NonConservativePower non_conservative_power(const CraneDynamicsOf<BeamBoom>&, const StateOf<BeamBoom>&,
                                                      double);

@@ -14,8 +14,11 @@ template <class Boom>
 [[nodiscard]] double potential_energy_J(const CraneDynamicsOf<Boom>& crane, const StateOf<Boom>& state);
 
 /// Potential of the soil while the whole track bears (contact fraction 1), J: 1/2 K_V R1^2 + 1/2 K_R phi2^2.
-template <class Boom>
-[[nodiscard]] double full_contact_energy_J(const CraneDynamicsOf<Boom>& crane, const StateOf<Boom>& state);
+[[nodiscard]] double full_contact_energy_J(const Soil& soil, double height_m, double tilt_rad) noexcept;
+
+/// Power of the soil on the crane, W; negative takes energy out.
+[[nodiscard]] double soil_power_W(const Soil& soil, double height_m, double tilt_rad, double height_rate_m_s,
+                                  double tilt_rate_rad_s) noexcept;
 
 /// Energy in the compressed oil, V_t / (8 beta_e) P_L^2, J.
 template <class Boom>

@@ -53,7 +53,7 @@ int reproduce(const ReproduceOptions& options) {
     if (options.json || !options.out.empty()) {
         std::cerr << "booms and conditioning ...\n";
         appendix.booms = booms_alone(runs.a.options().crane_case.crane.structure);
-        for (const ThesisRun* run : {&runs.a, &runs.b, &runs.c}) {
+        for (const ThesisRun* run : {&runs.a, &runs.b, &runs.c, &runs.a_beam}) {
             appendix.conditioning.push_back(conditioning_of(*run));
         }
         if (!options.quick) {

@@ -9,9 +9,10 @@ namespace steadyboom::hil::reproduction {
 struct Conditioning {
     std::string run;
     double condition_at_rest = 0.0;
-    double worst_condition = 0.0;  ///< over all samples of the run
+    double worst_condition = 0.0;  ///< over all steps of the integrator
     double scaled_condition_at_rest = 0.0;
     double worst_scaled_condition = 0.0;
+    int rows = 0;  ///< of M: coordinates of the crane on the run's boom
     /// Rows whose diagonal entry does not outweigh the sum of the others, at rest, which the thesis calls
     /// ill-conditioned (chapter 4).
     int rows_without_dominant_diagonal = 0;
@@ -20,7 +21,8 @@ struct Conditioning {
     double solver_difference = 0.0;
 };
 
-/// Takes a few tenths of a second for 10 s sampled every 1 ms.
+/// Of a run without control, on its own boom: integrates it anew with the valve shut, because a beam's state is more
+/// than the thesis's coordinates tell. Takes a few tenths of a second for 10 s. Throws what simulate throws.
 [[nodiscard]] Conditioning conditioning_of(const ThesisRun& run);
 
 }  // namespace steadyboom::hil::reproduction

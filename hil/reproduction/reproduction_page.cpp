@@ -248,7 +248,7 @@ class Page : HtmlPage {
             "M ill-conditioned. Here a Runge-Kutta method of order 5(4) keeps the error of each step below {:g} of "
             "each "
             "entry, and M is factorised as LDL' without pivoting. How well M can be inverted, and how far the two ways "
-            "of solving are apart, at every sample of the runs without control:</p>\n<table>\n<thead><tr><th "
+            "of solving are apart, at every step of the runs without control:</p>\n<table>\n<thead><tr><th "
             "style=\"width:14%\">run</th><th>condition of M at rest</th><th>worst of the run</th><th>diagonal scaled "
             "to "
             "one, at rest</th><th>worst of the run</th><th>rows without a dominant diagonal</th><th>largest difference "
@@ -261,8 +261,7 @@ class Page : HtmlPage {
                 "without a dominant diagonal\">{} of {}</td><td data-k=\"LDL' against full "
                 "pivoting\">{:.1e}</td></tr>\n",
                 html_text(row.run), row.condition_at_rest, row.worst_condition, row.scaled_condition_at_rest,
-                row.worst_scaled_condition, row.rows_without_dominant_diagonal, +plant::coordinate_count,
-                row.solver_difference);
+                row.worst_scaled_condition, row.rows_without_dominant_diagonal, row.rows, row.solver_difference);
         }
         put("</tbody>\n</table>\n<p class=\"soft\">Metres and radians make up most of the unscaled number. A condition "
             "number of 10<sup>k</sup> costs about k of a double's sixteen digits.</p>\n");
@@ -307,13 +306,16 @@ class Page : HtmlPage {
                   {phi9_rad, "φ9", "mrad", 1e3, "34", true},
                   {R9_m, "R9", "mm", 1e3, "35, 70", true},
                   {q1_m, "q1", "mm", 1e3, "36, 80", true}});
+        const std::string chord_of_both =
+            fmt::format("chord, less the straight boom's length; that of the links moves by {:.2g} mm alone",
+                        1e3 * chord_range_m(runs_.a));
         put_case("Case A with both booms, uncontrolled", with_both_booms,
                  {{R1_m, "R1", "mm", 1e3, "24"},
                   {phi2_rad, "φ2", "mrad", 1e3, "25"},
                   {phi6_rad, "φ6", "mrad", 1e3, "26"},
                   {phi9_rad, "φ9", "mrad", 1e3, "27"},
                   {R9_m, "R9", "mm", 1e3, "28"},
-                  {chord_m, "chord, less the straight boom's length", "mm", 1e3, "29, 30"},
+                  {chord_m, chord_of_both, "mm", 1e3, "29, 30"},
                   {pendent_tension_N, "pendent tension", "kN", 1e-3, "29, 30"},
                   {load_line_tension_N, "load line tension", "kN", 1e-3, "29, 30"},
                   {R1_m, "R1", "mm", 1e3, "31", true},

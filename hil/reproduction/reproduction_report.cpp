@@ -162,6 +162,7 @@ std::string json_of(const std::vector<Row>& rows, const Appendix& appendix, cons
                                             {"worst_condition", row.worst_condition},
                                             {"scaled_condition_at_rest", row.scaled_condition_at_rest},
                                             {"worst_scaled_condition", row.worst_scaled_condition},
+                                            {"rows", row.rows},
                                             {"rows_without_dominant_diagonal", row.rows_without_dominant_diagonal},
                                             {"solver_difference", row.solver_difference}});
     }

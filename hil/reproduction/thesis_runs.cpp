@@ -113,13 +113,10 @@ ThesisRun::ThesisRun(std::string name, const SimulationOptions& options) {
                                                         .signals = std::vector<std::vector<double>>(signal_count),
                                                         .spectra = std::vector<Spectrum>(signal_count)});
     const plant::Equilibrium& rest = record->rest;
-    const bool has_links = options.crane_case.boom == BoomKind::links;
-    const plant::CraneDynamics links(options.crane_case.crane);  // soil and joints are told by it
-    const plant::StructureParameters& structure = options.crane_case.crane.structure;
-    const double link_m = structure.link_length_m();
-    const double bending_N_m = 3.0 * structure.boom_joint_stiffness_N_m / (link_m * link_m);
-    const Eigen::Matrix2d joint_mass =
-        links.mass_matrix(plant::coordinates_of(rest.state)).block<2, 2>(plant::q1_m, plant::q1_m);
+    const plant::Soil soil(options.crane_case.crane.soil);
+    const auto soil_energy_J = [&](const plant::CraneState& state) {
+        return plant::full_contact_energy_J(soil, state[plant::R1_m], state[plant::phi2_rad]);
+    };
 
     TruthSample last;
     last.state = rest.state;
@@ -138,33 +135,23 @@ ThesisRun::ThesisRun(std::string name, const SimulationOptions& options) {
         add(Signal::spool_m, sample.spool_m);
         add(Signal::power_W, sample.hydraulic_power_W);
         add(Signal::contact_fraction, sample.contact_fraction);
-        const Eigen::Vector2d q = deviation.segment<2>(plant::q1_m);
-        const Eigen::Vector2d q_rate = deviation.segment<2>(plant::velocity_offset + plant::q1_m);
-        add(Signal::boom_energy_J,
-            has_links ? bending_N_m * (q.squaredNorm() - q[0] * q[1]) + 0.5 * q_rate.dot(joint_mass * q_rate) : 0.0);
+        add(Signal::boom_energy_J, sample.boom_energy_J);
         add(Signal::crane_energy_J, sample.residual_energy_J);
-        record->soil_work_J +=
-            plant::non_conservative_power(links, sample.state, sample.spool_m).soil_W * (sample.t_s - last.t_s);
+        record->soil_work_J += plant::soil_power_W(soil, sample.state[plant::R1_m], sample.state[plant::phi2_rad],
+                                                   sample.state[plant::velocity_offset + plant::R1_m],
+                                                   sample.state[plant::velocity_offset + plant::phi2_rad]) *
+                               (sample.t_s - last.t_s);
         const double tension_N = 0.5 * (sample.pendent_tension_N + last.pendent_tension_N) - rest.pendent_tension_N;
         record->piston_work_J += tension_N * (sample.state[plant::piston_index] - last.state[plant::piston_index]);
         last = sample;
     });
-    record->soil_work_J +=
-        plant::full_contact_energy_J(links, last.state) - plant::full_contact_energy_J(links, rest.state);
+    record->soil_work_J += soil_energy_J(last.state) - soil_energy_J(rest.state);
     for (std::size_t i = 0; i < signal_count; ++i) {
         // Without the last sample the record is as long as the run: whole periods of 1/duration stand on a bin.
         record->spectra[i] = amplitude_spectrum(std::span(record->signals[i]).first(record->signals[i].size() - 1),
                                                 options.output_period_s);
     }
     record_ = record;
-}
-
-plant::CraneState ThesisRun::state(std::size_t sample) const noexcept {
-    plant::CraneState state = record_->rest.state;
-    for (int i = 0; i < plant::state_count; ++i) {
-        state[i] += record_->signals[static_cast<std::size_t>(i)][sample];
-    }
-    return state;
 }
 
 std::vector<const ThesisRun*> ThesisRuns::all() const {

@@ -35,8 +35,8 @@ enum class Signal : int {
     spool_m,
     power_W,
     contact_fraction,
-    boom_energy_J,   ///< bending and joint motion of three links, about the equilibrium; 0 for the beam
-    crane_energy_J,  ///< residual energy, plant/energy.hpp
+    boom_energy_J,   ///< TruthSample::boom_energy_J
+    crane_energy_J,  ///< TruthSample::residual_energy_J
     count
 };
 
@@ -71,8 +71,6 @@ class ThesisRun {
     [[nodiscard]] const Spectrum& spectrum(Signal signal) const noexcept {
         return record_->spectra[static_cast<std::size_t>(signal)];
     }
-    /// The crane at a sample, in the thesis's coordinates; `sample` is an index into every signal.
-    [[nodiscard]] plant::CraneState state(std::size_t sample) const noexcept;
     /// Energy of the motion that the soil's damping took, J, at most 0: the soil's work less what its spring holds at
     /// the end (full contact at both ends).
     [[nodiscard]] double soil_work_J() const noexcept { return record_->soil_work_J; }

@@ -55,8 +55,8 @@ TYPED_TEST(EnergyOf, UndampedCraneConservesItWhileTheTrackBearsAndTheRopesStayTa
         ASSERT_NEAR(kinetic_energy_J(crane, x), injected_J, 1e-9 * injected_J);
 
         const auto energy_J = [&](const typename TypeParam::State& y) {
-            return kinetic_energy_J(crane, y) + potential_energy_J(crane, y) + full_contact_energy_J(crane, y) +
-                   oil_energy_J(crane, y);
+            return kinetic_energy_J(crane, y) + potential_energy_J(crane, y) +
+                   full_contact_energy_J(crane.soil(), y[R1_m], y[phi2_rad]) + oil_energy_J(crane, y);
         };
         const auto rate = [&](double, const typename TypeParam::State& y) { return crane.derivative(y, 0.0); };
         typename AdaptiveRungeKutta<typename TypeParam::State>::Tolerances tolerances;
@@ -233,7 +233,8 @@ TYPED_TEST(EnergyOf, ResidualEnergyIsTheCranesOwnForSmallDeviationsOnWholeTracks
     const typename TypeParam::State rest = find_equilibrium(crane).state;
     const ResidualEnergyOf<typename TypeParam::Boom> residual(crane, rest);
     const auto energy_J = [&](const typename TypeParam::State& y) {
-        return kinetic_energy_J(crane, y) + potential_energy_J(crane, y) + full_contact_energy_J(crane, y);
+        return kinetic_energy_J(crane, y) + potential_energy_J(crane, y) +
+               full_contact_energy_J(crane.soil(), y[R1_m], y[phi2_rad]);
     };
     RandomStates random(crane, 4);
     for (int i = 0; i < 20; ++i) {

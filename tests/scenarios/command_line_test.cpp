@@ -245,7 +245,7 @@ TEST_F(CommandLine, ReproduceQuickPrintsEveryRowAsJsonAndItsProgressApart) {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
     const auto document = nlohmann::json::parse(outcome.out);
     EXPECT_EQ(document.at("rows").size(), document.at("counts").at("rows"));
-    EXPECT_EQ(document.at("conditioning").size(), 3U);
+    EXPECT_EQ(document.at("conditioning").size(), 4U);
     EXPECT_TRUE(document.at("sensitivity").at("variations").empty());
     EXPECT_THAT(outcome.error, HasSubstr("case A, law 2 ..."));
     EXPECT_EQ(content(folder_ / "DIR" / "reproduction.json"), outcome.out);
