@@ -42,6 +42,7 @@ hil::PlantRecord record_of(const hil::TruthSample& truth, std::uint64_t step, st
                             .load_pressure_Pa = truth.load_pressure_Pa,
                             .hydraulic_power_W = truth.hydraulic_power_W,
                             .residual_energy_J = truth.residual_energy_J,
+                            .boom_energy_J = truth.boom_energy_J,
                             .valve_timeouts = valve_timeouts};
     std::copy(truth.state.begin(), truth.state.end(), record.state.begin());
     return record;

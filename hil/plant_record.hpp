@@ -10,7 +10,7 @@ namespace steadyboom::hil {
 
 /// The true crane after one integration step, as the plant process broadcasts it through a runtime::TickRing.
 struct PlantRecord {
-    static constexpr std::uint32_t layout_version = 2;
+    static constexpr std::uint32_t layout_version = 3;
 
     std::uint64_t step = 0;
     std::int64_t time_ns = 0;  ///< steady time that the state belongs to
@@ -24,6 +24,7 @@ struct PlantRecord {
     double load_pressure_Pa = 0.0;
     double hydraulic_power_W = 0.0;
     double residual_energy_J = 0.0;
+    double boom_energy_J = 0.0;
     std::uint64_t valve_timeouts = 0;  ///< times the valve centred itself since the start
 
     [[nodiscard]] TruthSample truth() const noexcept {
@@ -36,7 +37,8 @@ struct PlantRecord {
                 .contact_fraction = contact_fraction,
                 .load_pressure_Pa = load_pressure_Pa,
                 .hydraulic_power_W = hydraulic_power_W,
-                .residual_energy_J = residual_energy_J};
+                .residual_energy_J = residual_energy_J,
+                .boom_energy_J = boom_energy_J};
     }
 };
 
