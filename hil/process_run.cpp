@@ -26,6 +26,7 @@
 #include "hil/whole_file.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/controller_config.hpp"
+#include "runtime/network_file.hpp"
 #include "runtime/operator_client.hpp"
 #include "runtime/tick_ring.hpp"
 
@@ -171,6 +172,7 @@ runtime::ControllerConfig controller_config(const RunOptions& options, const std
     const runtime::ControlTickConfig tick = control_config(options);
     runtime::ControllerConfig config;
     config.crane_file = folder / "controller-crane.toml";
+    config.network_file = folder / "network.toml";
     config.law = options.law;
     config.interface = interface;
     config.expect_remote = false;  // the crane is on this machine, whatever the interface
@@ -197,6 +199,7 @@ RunResult run_on_interface(const RunOptions& options, const std::string& interfa
     const runtime::ControllerConfig controller = controller_config(options, interface, absolute, scratch.path());
     PlantConfig plant;
     plant.case_file = absolute / "plant-case.toml";
+    plant.network_file = controller.network_file;
     plant.interface = interface;
     plant.rate_Hz = options.rate_Hz;
     plant.seed = static_cast<int>(options.seed);
@@ -204,6 +207,7 @@ RunResult run_on_interface(const RunOptions& options, const std::string& interfa
     plant.duration_s = options.duration_s;
     plant.ring_path = scratch.path() / "plant.ring";
     write_whole_file(absolute / "controller-crane.toml", runtime::to_toml(controllers_copy));
+    write_whole_file(controller.network_file, runtime::to_toml(options.network));
     write_whole_file(absolute / "controller.toml", runtime::to_toml(controller));
     write_whole_file(absolute / "plant-case.toml", to_toml(options.crane_case));
     write_whole_file(absolute / "plant.toml", to_toml(plant));

@@ -15,6 +15,7 @@
 #include "hil/report.hpp"
 #include "hil/run_folder.hpp"
 #include "hil/scratch_folder.hpp"
+#include "runtime/network_file.hpp"
 
 namespace steadyboom::hil {
 
@@ -27,6 +28,7 @@ struct RunCommandOptions {
     std::string law = "joint-deflection";
     std::optional<BoomKind> boom;
     std::string bus = "loopback";
+    std::string network;  ///< network file; empty: the virtual crane's own devices
     double rate_Hz = 200.0;
     std::optional<double> duration_s;
     std::uint32_t seed = 1;
@@ -83,6 +85,9 @@ int run_case(const RunCommandOptions& options) {
                    .mismatches = options.mismatches};
     run.crane_case.boom = options.boom.value_or(run.crane_case.boom);
     run.duration_s = options.duration_s.value_or(run.crane_case.manoeuvre.duration_s);
+    if (!options.network.empty()) {
+        run.network = runtime::load_network_file(options.network, control_config(run).network);
+    }
     const bool several = options.law == "all";
 
     std::vector<RunResult> runs;
@@ -143,6 +148,8 @@ void add_run_command(CLI::App& app, Action& selected) {
                      "loopback: in-process bus in lockstep, faster than real time; or a SocketCAN interface: two "
                      "processes in real time")
         ->capture_default_str();
+    command->add_option("--network", options->network,
+                        "Network file for both ends of the bus; without it the virtual crane's own devices");
     command->add_option("--rate-hz", options->rate_Hz, "Control ticks per second")
         ->check(between(50.0, 2000.0, "Hz"))
         ->capture_default_str();

@@ -285,15 +285,16 @@ TEST_F(CommandLine, CanTableListsEveryDeviceAndTheBusLoad) {
     EXPECT_EQ(slower.at("bit_rate_bit_s"), 250'000);
 }
 
+/// The shipped network file with the load pin's node id changed.
+std::string network_with_load_pin_at(const std::string& node_id) {
+    std::string text = content(STEADYBOOM_NETWORK_FILE);
+    const std::string row = "load_pin          = { node_id = 0x18";
+    text.replace(text.find(row), row.size(), "load_pin          = { node_id = " + node_id);
+    return text;
+}
+
 TEST_F(CommandLine, TheNetworkFileDecidesWhatTheTableAndTheDbcSay) {
-    // The shipped file with the load pin's node id changed.
-    const auto shipped_with = [](const std::string& node_id) {
-        std::string text = content(STEADYBOOM_NETWORK_FILE);
-        const std::string row = "load_pin          = { node_id = 0x18";
-        text.replace(text.find(row), row.size(), "load_pin          = { node_id = " + node_id);
-        return text;
-    };
-    std::ofstream(folder_ / "network.toml") << shipped_with("0x33");
+    std::ofstream(folder_ / "network.toml") << network_with_load_pin_at("0x33");
     const auto json = nlohmann::json::parse(steadyboom("can-table --json --network network.toml").out);
     EXPECT_EQ(json.at("devices").at(3).at("node_id"), 0x33);
     EXPECT_EQ(json.at("devices").at(3).at("protection"), "e2e");
@@ -301,8 +302,9 @@ TEST_F(CommandLine, TheNetworkFileDecidesWhatTheTableAndTheDbcSay) {
     EXPECT_EQ(content(folder_ / "network.dbc"), steadyboom("dbc --network network.toml").out);
     EXPECT_TRUE(content(folder_ / "network.dbc").find("BO_ 435 load_pin_tpdo1: 7 load_pin\n") != std::string::npos);
 
-    std::ofstream(folder_ / "bad.toml") << shipped_with("200");
-    for (const char* command : {"can-table", "dbc --out bad.dbc", "bus-monitor network.dbc"}) {
+    std::ofstream(folder_ / "bad.toml") << network_with_load_pin_at("200");
+    for (const char* command :
+         {"can-table", "dbc --out bad.dbc", "bus-monitor network.dbc", "run case-a --out bad.dbc"}) {
         const Outcome outcome = steadyboom(std::string(command) + " --network bad.toml");
         EXPECT_EQ(outcome.exit_code, 2) << command;
         EXPECT_THAT(outcome.error, testing::ContainsRegex("bad.toml:[0-9]+: device.load_pin.node_id = 200")) << command;
@@ -310,6 +312,25 @@ TEST_F(CommandLine, TheNetworkFileDecidesWhatTheTableAndTheDbcSay) {
         EXPECT_EQ(outcome.out, "") << command;
     }
     EXPECT_FALSE(fs::exists(folder_ / "bad.dbc"));
+}
+
+TEST_F(CommandLine, TheNetworkFileDecidesWhatBothEndsOfARunSpeak) {
+    std::ofstream(folder_ / "network.toml") << network_with_load_pin_at("0x33");
+    const Outcome outcome = steadyboom("run case-a --duration-s 1 --out run --json --network network.toml");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_EQ(nlohmann::json::parse(outcome.out).at("stayed_engaged"), true);
+    const std::string log = content(folder_ / "run/can.log");
+    EXPECT_THAT(log, HasSubstr(" 1B3#"));
+    EXPECT_THAT(log, testing::Not(HasSubstr(" 198#")));
+
+    // A network that the bus can carry at 200 Hz only.
+    const Outcome fast = steadyboom("run case-a --network network.toml --rate-hz 400 --out fast");
+    EXPECT_EQ(fast.exit_code, 2);
+    EXPECT_THAT(fast.error, HasSubstr("network.toml: CAN load"));
+    EXPECT_FALSE(fs::exists(folder_ / "fast"));
+    const Outcome missing = steadyboom("run case-a --network nosuch.toml");
+    EXPECT_EQ(missing.exit_code, 2);
+    EXPECT_THAT(missing.error, HasSubstr("nosuch.toml"));
 }
 
 TEST_F(CommandLine, BusMonitorReadsTheLogOfARun) {
