@@ -29,7 +29,7 @@ CraneNetwork::CraneNetwork(const NetworkConfig& config)
       manager_(std::make_unique<NetworkManager>(*table_)),
       valve_(make_valve_driver(*table_)) {
     for (const auto& row : table_->messages()) {
-        if (row.kind == MessageKind::pdo && !row.from_controller && row.protection == Protection::e2e) {
+        if (row.kind == MessageKind::pdo && row.present && !row.from_controller && row.protection == Protection::e2e) {
             inputs_[index_of(row.pdo)].receiver.emplace(row.data_id);
         }
     }

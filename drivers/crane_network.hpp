@@ -61,7 +61,6 @@ class CraneNetwork {
     [[nodiscard]] const ValveStatus& valve() const noexcept { return valve_->status(); }
     [[nodiscard]] const NodeStatus& node(Device device) const noexcept { return manager_->status(device); }
     [[nodiscard]] const NetworkManager& manager() const noexcept { return *manager_; }
-    [[nodiscard]] NetworkManager& manager() noexcept { return *manager_; }
 
     /// How far a device's PDO is believed; a message without protection is always valid.
     [[nodiscard]] ReceiverState state(Pdo pdo) const noexcept;

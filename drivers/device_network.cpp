@@ -65,7 +65,7 @@ std::vector<ObjectEntry> DeviceNetwork::dictionary_of(Device device) const {
     for (std::size_t i = 0; i < pdo_count; ++i) {
         const auto pdo = static_cast<Pdo>(i);
         const auto& p = config[pdo];
-        if (device_of(pdo) != device || from_controller(pdo)) {
+        if (p.device != device || from_controller(pdo) || !table_.row(pdo).present) {
             continue;
         }
         const bool on_sync = p.transmission == Transmission::sync && !d.configure;
@@ -330,8 +330,8 @@ void DeviceNetwork::take_valve_order(const CanFrame& frame, std::int64_t now_ns)
 }
 
 std::int64_t DeviceNetwork::event_interval_ns(Pdo pdo) const noexcept {
-    const Device device = device_of(pdo);
     const auto& p = table_.config()[pdo];
+    const Device device = p.device;
     if (!table_.config(device).canopen) {
         return p.event_ms * ns_per_ms;
     }
@@ -342,8 +342,8 @@ std::int64_t DeviceNetwork::event_interval_ns(Pdo pdo) const noexcept {
 bool DeviceNetwork::timer_due(std::int64_t now_ns) const noexcept {
     for (std::size_t i = 0; i < pdo_count; ++i) {
         const auto pdo = static_cast<Pdo>(i);
-        if (!from_controller(pdo) && operational(device_of(pdo)) && event_interval_ns(pdo) > 0 &&
-            now_ns >= next_event_ns_[i]) {
+        if (!from_controller(pdo) && table_.row(pdo).present && operational(table_.row(pdo).device) &&
+            event_interval_ns(pdo) > 0 && now_ns >= next_event_ns_[i]) {
             return true;
         }
     }
@@ -373,8 +373,9 @@ std::span<const CanFrame> DeviceNetwork::answer_sync(const plant::SensorVector& 
     std::size_t count = 0;
     for (const auto& message : table_.messages()) {
         const auto& node = nodes_[index_of(message.device)];
-        if (message.kind != MessageKind::pdo || message.from_controller || !operational(message.device) ||
-            !due(message, synchronous, now_ns) || node.silent || message_silent_[index_of(message.message)]) {
+        if (message.kind != MessageKind::pdo || message.from_controller || !message.present ||
+            !operational(message.device) || !due(message, synchronous, now_ns) || node.silent ||
+            message_silent_[index_of(message.message)]) {
             continue;
         }
         auto frame = table_.blank(message.message, now_ns);

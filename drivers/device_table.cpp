@@ -164,19 +164,37 @@ void check_devices(const NetworkConfig& config) {
     }
 }
 
+/// Samples may come as far apart as the interlock lets them grow old. A protected message is scored tick by tick, and
+/// the valve's state and the emergency stop shall be seen in the tick in which they change.
+std::int64_t longest_timer_ticks(const NetworkConfig& config, Pdo pdo) {
+    const bool each_tick = config[config[pdo].device].protection == Protection::e2e || !carries_sensors_alone(pdo);
+    return each_tick ? 1 : 3;
+}
+
 void check_pdos(const NetworkConfig& config) {
     for (std::size_t i = 0; i < pdo_count; ++i) {
         const auto pdo = static_cast<Pdo>(i);
         const auto& p = config[pdo];
+        const Device usual = default_device_of(pdo);
+        const bool any = carries_sensors_alone(pdo);
+        if (any ? p.device == Device::controller || index_of(p.device) >= device_count : p.device != usual) {
+            refuse(key_of(pdo, "device"), name_of(p.device),
+                   any ? "allowed is any device but the controller" : "allowed is " + std::string(name_of(usual)));
+        }
         if (p.number < 1 || p.number > 4) {
             refuse(key_of(pdo, "number"), p.number, "allowed is 1 to 4");
         }
         const bool timer = p.transmission == Transmission::event && !from_controller(pdo);
-        const bool timer_fits = timer ? p.event_ms >= 1 && p.event_ms * ns_per_ms <= config.period_ns : p.event_ms == 0;
+        const bool timer_fits =
+            timer ? p.event_ms >= 1 && p.event_ms * ns_per_ms <= longest_timer_ticks(config, pdo) * config.period_ns
+                  : p.event_ms == 0;
         if (!timer_fits) {
-            refuse(key_of(pdo, "event_ms"), p.event_ms,
-                   timer ? "allowed is at least 1 and at most one tick, so that each tick has a sample"
-                         : "allowed is 0, as this PDO is not sent by a timer");
+            refuse(
+                key_of(pdo, "event_ms"), p.event_ms,
+                !timer ? "allowed is 0, as this PDO is not sent by a timer"
+                : longest_timer_ticks(config, pdo) == 1
+                    ? "allowed is at least 1 and at most one tick: what protects it, or moves the valve, counts ticks"
+                    : "allowed is at least 1 and at most three ticks: an older sample is a missing one");
         }
         if (p.extended_id >= extended_id_count) {
             refuse(key_of(pdo, "extended_id"), p.extended_id, "allowed is 0 to 536870911 (29 bits)");
@@ -355,9 +373,9 @@ std::uint8_t values_bytes(const NetworkConfig& config, Pdo pdo) {
         }
         end_bytes = p.length_bytes;
     }
-    const bool is_protected = config[device_of(pdo)].protection == Protection::e2e;
+    const bool is_protected = config[config[pdo].device].protection == Protection::e2e;
     if (is_protected && end_bytes + protection_bytes > longest_frame_bytes) {
-        refuse(key_of(device_of(pdo), "protection"), "e2e",
+        refuse(key_of(config[pdo].device, "protection"), "e2e",
                "counter and CRC need two bytes, and " + std::string(name_of(pdo)) + " has " +
                    std::to_string(end_bytes) + " of 8");
     }
@@ -376,14 +394,14 @@ const NetworkConfig& checked(const NetworkConfig& config) {
 }
 
 MessageRow pdo_row(const NetworkConfig& config, Pdo pdo) {
-    const Device device = device_of(pdo);
     const auto& p = config[pdo];
+    const Device device = p.device;
     const bool out = from_controller(pdo);
     const bool is_protected = config[device].protection == Protection::e2e;
     MessageRow row;
     row.message = message_of(pdo);
     row.name = std::string(name_of(device)) + (out ? "_rpdo" : "_tpdo") + std::to_string(p.number);
-    row.present = pdo != Pdo::valve_twin || is_protected;
+    row.present = values_bytes(config, pdo) > 0 && (pdo != Pdo::valve_twin || is_protected);
     row.kind = MessageKind::pdo;
     row.device = device;
     row.pdo = pdo;

@@ -95,8 +95,11 @@ std::string_view name_of(Unit unit) noexcept {
     return name_in(unit_rows, unit);
 }
 
-Device device_of(Pdo pdo) noexcept {
+Device default_device_of(Pdo pdo) noexcept {
     return pdo_rows[index_of(pdo)].device;
+}
+bool carries_sensors_alone(Pdo pdo) noexcept {
+    return !from_controller(pdo) && pdo != Pdo::valve_status && pdo != Pdo::safety_inputs;
 }
 bool from_controller(Pdo pdo) noexcept {
     return pdo_rows[index_of(pdo)].from_controller;
@@ -135,6 +138,7 @@ std::array<DeviceConfig, device_count> NetworkConfig::default_devices() {
 std::array<PdoConfig, pdo_count> NetworkConfig::default_pdos() {
     std::array<PdoConfig, pdo_count> pdos;
     for (std::size_t i = 0; i < pdo_count; ++i) {
+        pdos[i].device = pdo_rows[i].device;
         pdos[i].data_id = static_cast<std::uint16_t>(0x5B00 + i);
     }
     pdos[index_of(Pdo::valve_piston)].number = 2;

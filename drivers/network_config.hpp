@@ -121,10 +121,11 @@ struct DeviceConfig {
 };
 
 struct PdoConfig {
-    std::uint8_t number = 1;        ///< 1 to 4: TPDO1, RPDO1, ...; with the node id it makes the identifier
-    std::uint32_t extended_id = 0;  ///< 29-bit identifier instead; 0: none
-    std::uint8_t length_bytes = 0;  ///< without the protection's two bytes; 0: where its signals end
-    std::uint16_t data_id = 0;      ///< what the CRC is taken over besides the frame; all different, unused by the twin
+    Device device = Device::controller;  ///< that sends or takes it; another than by default for sensors alone
+    std::uint8_t number = 1;             ///< 1 to 4: TPDO1, RPDO1, ...; with the node id it makes the identifier
+    std::uint32_t extended_id = 0;       ///< 29-bit identifier instead; 0: none
+    std::uint8_t length_bytes = 0;       ///< without the protection's two bytes; 0: where its signals end
+    std::uint16_t data_id = 0;  ///< what the CRC is taken over besides the frame; all different, unused by the twin
     Transmission transmission = Transmission::sync;  ///< of what a device sends
     int event_ms = 0;  ///< period of the event timer, at most one tick; 0 with Transmission::sync
 };
@@ -179,8 +180,12 @@ struct NetworkConfig {
     [[nodiscard]] static std::array<SignalConfig, signal_count> default_signals();
 };
 
-/// Who sends or obeys a PDO, and which PDO a signal is in: fixed, whatever the configuration.
-[[nodiscard]] Device device_of(Pdo pdo) noexcept;
+/// The device that sends or takes a PDO by default.
+[[nodiscard]] Device default_device_of(Pdo pdo) noexcept;
+
+/// What a PDO is, whatever the configuration: one with sensor values alone, which may come from any device; one that
+/// the controller sends. And which PDO a signal is in.
+[[nodiscard]] bool carries_sensors_alone(Pdo pdo) noexcept;
 [[nodiscard]] bool from_controller(Pdo pdo) noexcept;
 [[nodiscard]] Pdo pdo_of(Signal signal) noexcept;
 

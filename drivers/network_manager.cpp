@@ -72,7 +72,7 @@ std::vector<NetworkManager::Step> NetworkManager::steps_of(Device device) const 
     for (std::size_t i = 0; i < pdo_count; ++i) {
         const auto pdo = static_cast<Pdo>(i);
         const auto& p = config[pdo];
-        if (device_of(pdo) != device || from_controller(pdo)) {
+        if (p.device != device || from_controller(pdo) || !table_.row(pdo).present) {
             continue;
         }
         const auto parameters = static_cast<std::uint16_t>(0x1800 + p.number - 1);
@@ -199,7 +199,9 @@ void NetworkManager::watch(Device device, std::int64_t now_ns) noexcept {
         case DeviceState::lost:
             if (!node.due && now_ns >= node.retry_ns) {
                 node.due = true;
-                node.command = NmtCommand::enter_pre_operational;
+                // One that fell silent in the midst of its answers is given a new start.
+                node.command = node.status.managed == DeviceState::sdo_timed_out ? NmtCommand::reset_communication
+                                                                                 : NmtCommand::enter_pre_operational;
             }
             break;
         case DeviceState::boot_up:
@@ -275,6 +277,7 @@ void NetworkManager::advance(std::int64_t now_ns) noexcept {
     if (!step.writes && (sdo_.value() < step.lowest || sdo_.value() > step.highest)) {
         note(SdoAbort::none);
         fail(node, step.otherwise, now_ns);
+        node.command = NmtCommand::stop;  // whatever it is, it neither sends nor obeys process data until asked again
         return;
     }
     if (++node.next_step < node.steps.size()) {
@@ -326,9 +329,6 @@ std::optional<CanFrame> NetworkManager::nmt_command(std::int64_t now_ns) noexcep
         if (started && table_.config(static_cast<Device>(i)).heartbeat_ms == 0) {
             node.status.managed = DeviceState::operational;  // nothing else will tell
         }
-        if (command == NmtCommand::stop) {
-            node.status.managed = DeviceState::stopped;
-        }
         return nmt(command, table_.node_id(static_cast<Device>(i)), now_ns);
     }
     return std::nullopt;
@@ -340,12 +340,6 @@ CanFrame NetworkManager::nmt(NmtCommand command, std::uint8_t node_id, std::int6
     message.data[1] = node_id;
     ++nmt_commands_;
     return message;
-}
-
-void NetworkManager::request(NmtCommand command, Device device) noexcept {
-    if (device != Device::controller && table_.config(device).canopen) {
-        nodes_[index_of(device)].command = command;
-    }
 }
 
 bool NetworkManager::all_required_operational() const noexcept {

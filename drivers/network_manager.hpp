@@ -48,8 +48,9 @@ struct NodeStatus {
 /// NMT manager (CiA 301, 302): brings every device from its boot-up, or from whatever it was doing, to operational. For
 /// each: ask 1000h and, where the configuration names them, 1018h:01 and :02 and the valve's command timeout; where it
 /// may be configured, write transmission type and event timer of its TPDOs and its heartbeat time; then start it. What
-/// goes wrong is tried again after a second. A device whose heartbeat stays away for its consumer time is lost; heard
-/// again, it begins anew, for it could be another one.
+/// goes wrong is tried again after a second. A device that is not who it should be, or a valve without command timeout,
+/// is stopped until then; one that fell silent in the midst of its answers is reset. A device whose heartbeat stays
+/// away for its consumer time is lost; heard again, it begins anew, for it could be another one.
 ///
 /// A state machine that waits for nothing: one frame a tick at most, no allocation after construction.
 class NetworkManager {
@@ -68,10 +69,6 @@ class NetworkManager {
 
     /// The tick's one management frame, if any: the controller's heartbeat, or else an NMT command, or else SDO.
     [[nodiscard]] std::optional<CanFrame> frame(std::int64_t now_ns) noexcept;
-
-    /// Sends this NMT command to one device when its turn comes. A reset device boots and begins anew; a stopped one
-    /// stays so until it is reset.
-    void request(NmtCommand command, Device device) noexcept;
 
     [[nodiscard]] const NodeStatus& status(Device device) const noexcept { return nodes_[index_of(device)].status; }
     [[nodiscard]] bool operational(Device device) const noexcept {

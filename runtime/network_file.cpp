@@ -39,6 +39,14 @@ constexpr Words<RawType, 6> type_words = {{{"bit", RawType::bit},
                                            {"i16", RawType::i16},
                                            {"u32", RawType::u32},
                                            {"i32", RawType::i32}}};
+const auto device_words = [] {  // all but the controller
+    Words<Device, drivers::device_count - 1> words;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const auto device = static_cast<Device>(i + 1);
+        words[i] = {drivers::name_of(device), device};
+    }
+    return words;
+}();
 const auto unit_words = [] {
     Words<Unit, 12> words;
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -71,6 +79,9 @@ void declare_device(TomlSchema& schema, Device device, DeviceConfig& config) {
 
 void declare_pdo(TomlSchema& schema, Pdo pdo, PdoConfig& config) {
     schema.optional_section("pdo." + std::string(drivers::name_of(pdo)));
+    if (drivers::carries_sensors_alone(pdo)) {
+        schema.word<Device>("device", config.device, device_words);
+    }
     schema.integer("number", config.number, 1, 4);
     schema.integer("extended_id", config.extended_id, 0, 0x1FFF'FFFF);
     if (pdo != Pdo::valve_twin) {  // it repeats the command, bit for bit

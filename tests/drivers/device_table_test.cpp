@@ -64,8 +64,12 @@ TEST(DeviceTable, SignalsLieInTheirMessagesAndLeaveRoomForProtection) {
 
 TEST(DeviceTable, ADeviceIsDescribedByItsRows) {
     NetworkConfig config;
-    config[Pdo::boom_angle] = {
-        .number = 2, .length_bytes = 6, .data_id = 9, .transmission = Transmission::event, .event_ms = 4};
+    config[Pdo::boom_angle] = {.device = Device::boom_inclinometer,
+                               .number = 2,
+                               .length_bytes = 6,
+                               .data_id = 9,
+                               .transmission = Transmission::event,
+                               .event_ms = 4};
     config[Signal::boom_angle] = {.object = 0x6010,
                                   .type = RawType::i16,
                                   .byte_offset = 2,
@@ -90,6 +94,23 @@ TEST(DeviceTable, ADeviceIsDescribedByItsRows) {
     EXPECT_EQ(encode_value(row, 60.0 * rad_per_deg, frame), SampleStatus::ok);
     EXPECT_EQ(frame.data, (std::array<std::uint8_t, 8>{0, 0, 0x0B, 0xB8}));  // (60 - 90) / -0.01 = 3000
     EXPECT_NEAR(*decode_value(row, frame), 60.0 * rad_per_deg, 1e-9);
+}
+
+TEST(DeviceTable, APdoIsOfTheDeviceThatSendsItAndOfNoneIfNothingIsInIt) {
+    NetworkConfig config;
+    config[Signal::line_length].mapped = false;
+    config[Pdo::valve_piston].device = Device::drum_encoder;
+    config[Device::drum_encoder].protection = Protection::none;
+    const DeviceTable table(config);
+    EXPECT_FALSE(table.row(Pdo::drum).present);
+    const auto& piston = table.row(Pdo::valve_piston);
+    EXPECT_EQ(piston.name, "drum_encoder_tpdo2");
+    EXPECT_EQ(piston.id, 0x29CU);
+    EXPECT_EQ(piston.protection, Protection::none);
+    EXPECT_EQ(piston.length_bytes, 6U);
+    EXPECT_EQ(table.message_with(0x29C), message_of(Pdo::valve_piston));
+    EXPECT_EQ(table.message_with(0x2A0), Message::none);
+    EXPECT_EQ(table.message_with(0x19C), Message::none);
 }
 
 TEST(DeviceTable, NodeIdsMoveTheIdentifiersAndNothingElse) {
@@ -159,6 +180,27 @@ TEST(DeviceTable, BadPdoIsRejectedWithKeyValueAndWhatIsAllowed) {
                         c[Pdo::drum].event_ms = event_ms;
                     }),
                     HasSubstr("pdo.drum.event_ms = " + std::to_string(event_ms) + ": allowed is at least 1"));
+    }
+    // A message without counter may leave out ticks, but neither the valve's state nor the emergency stop.
+    const auto on_timer = [](Pdo pdo, int event_ms) {
+        return complaint_after([=](auto& c) {
+            c.protect_all(Protection::none);
+            c[pdo].transmission = Transmission::event;
+            c[pdo].event_ms = event_ms;
+        });
+    };
+    EXPECT_EQ(on_timer(Pdo::drum, 15), "none");
+    EXPECT_THAT(on_timer(Pdo::drum, 16), HasSubstr("pdo.drum.event_ms = 16: allowed is at least 1 and at most three"));
+    for (const auto pdo : {Pdo::valve_status, Pdo::safety_inputs}) {
+        EXPECT_EQ(on_timer(pdo, 5), "none");
+        EXPECT_THAT(on_timer(pdo, 6), HasSubstr(".event_ms = 6: allowed is at least 1 and at most one tick"));
+    }
+    EXPECT_THAT(complaint_after([](auto& c) { c[Pdo::drum].device = Device::controller; }),
+                HasSubstr("pdo.drum.device = controller: allowed is any device but the controller"));
+    for (const auto pdo : {Pdo::valve_status, Pdo::safety_inputs, Pdo::valve_command, Pdo::valve_twin}) {
+        EXPECT_THAT(complaint_after([=](auto& c) { c[pdo].device = Device::load_pin; }),
+                    HasSubstr(".device = load_pin: allowed is s"))
+            << name_of(pdo);
     }
     EXPECT_THAT(complaint_after([](auto& c) { c[Pdo::strain].length_bytes = 5; }),
                 HasSubstr("pdo.strain.length_bytes = 5: allowed is 6"));

@@ -134,7 +134,7 @@ TEST_F(NetworkManagerTest, DeviceOfAnotherTypeIsNeverStartedAndItsDataAreNotBeli
     EXPECT_EQ(node.failed_object, (ObjectAddress{0x1000, 0}));
     EXPECT_EQ(node.read_raw, 406U);
     EXPECT_FALSE(controller_.manager().all_required_operational());
-    EXPECT_EQ(devices_.state(Device::boom_inclinometer), NodeState::pre_operational);
+    EXPECT_EQ(devices_.state(Device::boom_inclinometer), NodeState::stopped);
     EXPECT_TRUE(tick().fresh(plant::line_angle_rad));
     // The right device in its place is found within the next second's question.
     devices_.object(Device::boom_inclinometer, {0x1000, 0})->value_raw = 410;
@@ -244,17 +244,37 @@ TEST_F(NetworkManagerTest, RebootInMidRunIsCheckedConfiguredAndStartedAgain) {
     EXPECT_EQ(controller_.node(Device::boom_inclinometer).boot_ups, 2U);
 }
 
-TEST_F(NetworkManagerTest, StopIsObeyedAndLastsUntilAReset) {
+TEST_F(NetworkManagerTest, DeviceThatAnotherStoppedStaysSoUntilAReset) {
     start();
-    controller_.manager().request(NmtCommand::stop, Device::load_pin);
+    const auto nmt = [&](std::uint8_t command) {
+        devices_.receive(std::array{CanFrame{.id = 0, .length = 2, .data = {command, 0x18}}}, now_ns_);
+    };
+    nmt(0x02);
     for (int i = 0; i < 200; ++i) {
         (void)tick();
     }
     EXPECT_EQ(devices_.state(Device::load_pin), NodeState::stopped);
     EXPECT_EQ(controller_.node(Device::load_pin).managed, DeviceState::stopped);
-    controller_.manager().request(NmtCommand::reset_node, Device::load_pin);
+    nmt(0x81);
     EXPECT_LT(ticks_until(Device::load_pin, DeviceState::operational), 30);
     EXPECT_EQ(controller_.node(Device::load_pin).boot_ups, 2U);
+}
+
+TEST_F(NetworkManagerTest, DeviceThatFallsSilentInTheMidstOfItsAnswersIsResetAndBeginsAnew) {
+    bus_.set_wire([](CanFrame& frame) { return frame.id != 0x598; });  // its SDO answers
+    EXPECT_LT(ticks_until(Device::load_pin, DeviceState::sdo_timed_out), 200);
+    for (int i = 0; i < 250; ++i) {
+        (void)tick();
+    }
+    int resets = 0;
+    for (const auto& entry : logged(0x000)) {
+        resets += entry.frame.data[0] == 0x82 ? 1 : 0;
+        EXPECT_TRUE(entry.frame.data[0] != 0x82 || entry.frame.data[1] == 0x18) << "nobody else";
+    }
+    EXPECT_GE(resets, 1);
+    EXPECT_EQ(controller_.node(Device::load_pin).boot_ups, 1U + static_cast<unsigned>(resets));
+    bus_.set_wire(nullptr);
+    EXPECT_LT(ticks_until(Device::load_pin, DeviceState::operational), 300);
 }
 
 TEST_F(NetworkManagerTest, EmergencyIsKeptUntilTheDeviceSaysThatItIsOver) {
@@ -309,6 +329,33 @@ TEST_F(NetworkManagerTest, DeviceSendsByItsOwnTimerIfSoConfigured) {
     EXPECT_EQ(fresh_ticks, 100);
     EXPECT_EQ(devices.object(Device::drum_encoder, {0x1800, 2})->value_raw, 255U);
     EXPECT_EQ(devices.object(Device::drum_encoder, {0x1800, 5})->value_raw, 5U);
+}
+
+TEST_F(NetworkManagerTest, PdoOfAnotherDeviceIsConfiguredThereAndAnEmptyOneNowhere) {
+    NetworkConfig config;
+    config[Pdo::valve_piston].device = Device::drum_encoder;
+    config[Signal::line_length].mapped = false;
+    CraneNetwork controller(config);
+    DeviceNetwork devices(config);
+    EXPECT_EQ(devices.object(Device::servo_valve, {0x1801, 2}), nullptr);
+    EXPECT_EQ(devices.object(Device::drum_encoder, {0x1800, 2}), nullptr);
+    std::vector<CanFrame> arrived;
+    plant::CraneMeasurement measured;
+    for (int i = 0; i < 200; ++i) {
+        now_ns_ += tick_ns;
+        measured = controller.decode(arrived, now_ns_);
+        devices.receive(controller.encode(guard_.neutral(), now_ns_), now_ns_);
+        const auto beats = devices.housekeeping(now_ns_);
+        arrived.assign(beats.begin(), beats.end());
+        const auto answers = devices.answer_sync(sensors_, feedback_, now_ns_);
+        arrived.insert(arrived.end(), answers.begin(), answers.end());
+    }
+    EXPECT_TRUE(controller.manager().operational(Device::servo_valve));
+    EXPECT_TRUE(controller.manager().operational(Device::drum_encoder));
+    EXPECT_EQ(devices.object(Device::drum_encoder, {0x1801, 2})->value_raw, 1U);
+    EXPECT_TRUE(measured.fresh(plant::piston_m));
+    EXPECT_NEAR(measured.value[plant::piston_m], sensors_[plant::piston_m], 0.5e-6);
+    EXPECT_EQ(measured.age_ticks[plant::line_length_m], plant::CraneMeasurement::never);
 }
 
 TEST_F(NetworkManagerTest, HeartbeatKeepsItsPaceOnALateClockAndTheClockMayStartBelowZero) {

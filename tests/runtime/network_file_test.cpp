@@ -68,8 +68,13 @@ TEST(NetworkFile, WhatIsWrittenReadsBackTheSame) {
                                          .device_type = 0x8002'0194,
                                          .vendor_id = 0xFFFF'FFFF,
                                          .product_code = 7};
-    config[drivers::Pdo::drum] = {
-        .number = 3, .length_bytes = 5, .data_id = 0xFFFF, .transmission = drivers::Transmission::event, .event_ms = 5};
+    config[drivers::Pdo::drum] = {.device = drivers::Device::load_pin,
+                                  .number = 3,
+                                  .length_bytes = 5,
+                                  .data_id = 0xFFFF,
+                                  .transmission = drivers::Transmission::event,
+                                  .event_ms = 5};
+    config[drivers::Pdo::valve_piston].device = drivers::Device::strain_link;
     config[drivers::Signal::line_angle].byte_order = drivers::ByteOrder::big_endian;
     config[drivers::Signal::line_angle].scale = -0.1 / 3.0;
     config[drivers::Signal::line_length].unit = drivers::Unit::mm;
@@ -97,6 +102,8 @@ TEST(NetworkFile, BadRowIsOneLineWithFileLineKeyValueAndRemedy) {
                 HasSubstr("device.strain_link.vendor_id: is missing"));
     EXPECT_THAT(error_of(with(shipped(), ", vendor_id =", ", vendor =")),
                 HasSubstr("device.strain_link.vendor = 0: unknown key; did you mean device.strain_link.vendor_id?"));
+    EXPECT_THAT(error_of(with(shipped(), "device = \"drum_encoder\"", "device = \"drum\"")),
+                HasSubstr("pdo.drum.device = \"drum\": must be \"strain_link\", "));
     EXPECT_THAT(error_of("[device.strain]\nnode_id = 1\n"),
                 HasSubstr("network.toml:1: [device.strain]: unknown section"));
     EXPECT_THAT(error_of("[devices]\n"), HasSubstr("[devices]: unknown section"));

@@ -238,6 +238,33 @@ TEST(ClosedLoop, ErrorPassiveLeaves15PercentOfAuthorityAndGivesItBack) {
         << "a warning alone takes nothing away";
 }
 
+// As bought ones often are: no counter and checksum; a valve that reports its spool alone, the piston's transducer on a
+// node of its own; inclinometer and load pin that send by their own timers, each third and each second tick.
+TEST(ClosedLoop, DevicesThatSkipTicksAndAPistonOnANodeOfItsOwnKeepTheMachineInCommand) {
+    using drivers::Device;
+    using drivers::Pdo;
+    hil::RunOptions options = options_for("case-a", LawKind::joint_deflection);
+    const double usual_J = hil::run_in_lockstep(options).figures.residual_energy_J;
+    auto& network = options.network;
+    network.protect_all(drivers::Protection::none);
+    network[drivers::Signal::line_length].mapped = false;
+    network[Pdo::valve_piston].device = Device::drum_encoder;
+    network[Pdo::valve_piston].number = 1;
+    network[Device::drum_encoder].required = true;
+    for (const auto& [pdo, event_ms] : {std::pair{Pdo::boom_angle, 15}, {Pdo::load_pin, 10}}) {
+        network[pdo].transmission = drivers::Transmission::event;
+        network[pdo].event_ms = event_ms;
+    }
+    const hil::RunResult run = hil::run_in_lockstep(options);
+    EXPECT_TRUE(run.stayed_engaged) << run.trouble;
+    EXPECT_NEAR(run.figures.residual_energy_J, usual_J, 0.05 * usual_J);
+    std::uint32_t oldest_ticks = 0;
+    for (std::size_t k = 400; k < run.ticks.size(); ++k) {
+        oldest_ticks = std::max(oldest_ticks, run.ticks[k].record.measured_age_ticks[plant::boom_angle_rad]);
+    }
+    EXPECT_EQ(oldest_ticks, 2U);
+}
+
 TEST(ClosedLoop, AMismatchFalsifiesTheControllersCopyAlone) {
     hil::RunOptions options = options_for("case-a", LawKind::none);
     const hil::RunResult exact = hil::run_in_lockstep(options);
