@@ -132,7 +132,7 @@ std::span<const drivers::CanFrame> VirtualCrane::frames_to_send(std::int64_t now
 }
 
 void VirtualCrane::advance(std::int64_t now_ns) noexcept {
-    valve_.obey(network_.valve_order(), now_ns);
+    valve_.obey(network_.valve_order(), motion_->spool_m(), now_ns);
     motion_->advance(valve_, valve_.next_target_m(), step_s_);
 }
 

@@ -12,9 +12,10 @@ namespace steadyboom::hil {
 /// A CiA 408 servo valve with its cut-off valve: what the spool is driven to, by orders and by their absence.
 ///
 /// All states but ACTIVE mean the closed centre; only an active valve follows its set-point. When no order came for
-/// command_timeout_ns (5 missed at 200 Hz) the valve centres itself, drops the cut-off and falls to FAULT_HOLD or
-/// FAULT_DISABLED until a reset edge lets it leave (drivers::Cia408Valve). The cut-off valve opens only while energised
-/// and a valve that is not in a fault allows it; closed, it locks the cylinder.
+/// command_timeout_ns (5 missed at 200 Hz) the valve centres itself, drops the cut-off and falls to FAULT_REACTION,
+/// with its spool centred to FAULT_HOLD or FAULT_DISABLED, until a reset edge lets it leave (drivers::Cia408Valve). The
+/// cut-off valve opens only while energised and a valve that is not in a fault allows it; closed, it locks the
+/// cylinder.
 class VirtualValve {
   public:
     static constexpr std::int64_t command_timeout_ns = 25'000'000;
@@ -22,8 +23,8 @@ class VirtualValve {
     /// `step_s` is the integration step between two calls of next_target_m(); the dead time is rounded to whole steps.
     VirtualValve(const plant::ActuatorParameters& actuator, double step_s);
 
-    /// Weighs the newest orders. Call it once per integration step.
-    void obey(const drivers::ValveOrder& order, std::int64_t now_ns) noexcept;
+    /// Weighs the newest orders; `spool_m` is where the spool is, m. Call it once per integration step.
+    void obey(const drivers::ValveOrder& order, double spool_m, std::int64_t now_ns) noexcept;
 
     /// Opening that the spool is driven to during the next step, m, after the dead time. One call per step.
     [[nodiscard]] double next_target_m() noexcept;
