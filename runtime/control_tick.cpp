@@ -115,7 +115,8 @@ void ControlTick::answer_operator() noexcept {
                       .time_ns = record_.time_ns,
                       .state = record_.interlock_state,
                       .reasons = record_.permission_reasons,
-                      .device_state = record_.device_state});
+                      .device_state = record_.device_state,
+                      .emergency_code = record_.emergency_code});
 }
 
 void ControlTick::run(const TickStart& start) noexcept {

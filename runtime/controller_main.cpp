@@ -4,11 +4,15 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
+#include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
+#include "drivers/emcy.hpp"
 #include "drivers/socketcan_bus.hpp"
 #include "runtime/bus_tender.hpp"
 #include "runtime/can_link/link_watch.hpp"
@@ -39,14 +43,18 @@ runtime::ControlTickConfig tick_config(const runtime::ControllerConfig& config) 
             .overruns_are_faults = config.realtime_required};
 }
 
-/// "load_pin is lost, drum_encoder is unknown"; empty if every device is operational.
-std::string missing_devices(const runtime::OperatorStatus& status) {
+/// "load_pin is lost, servo_valve reports RPDO timeout (8250h)"; empty if every device is operational and well.
+std::string device_troubles(const runtime::OperatorStatus& status) {
     std::string text;
     for (std::size_t i = 1; i < drivers::device_count; ++i) {
+        const auto name = drivers::name_of(static_cast<drivers::Device>(i));
         const auto state = static_cast<drivers::DeviceState>(status.device_state[i]);
         if (state != drivers::DeviceState::operational) {
-            text += (text.empty() ? "" : ", ") + std::string(drivers::name_of(static_cast<drivers::Device>(i))) +
-                    " is " + std::string(drivers::name_of(state));
+            text += fmt::format("{}{} is {}", text.empty() ? "" : ", ", name, drivers::name_of(state));
+        }
+        if (const auto code = status.emergency_code[i]; code != drivers::emergency_none) {
+            text += fmt::format("{}{} reports {} ({:04X}h)", text.empty() ? "" : ", ", name,
+                                drivers::emergency_text(code), code);
         }
     }
     return text;
@@ -56,7 +64,7 @@ std::string missing_devices(const runtime::OperatorStatus& status) {
 std::string describe(const runtime::OperatorStatus& status) {
     std::string text = controllers::name_of(static_cast<InterlockState>(status.state));
     const std::string reasons = controllers::reasons_in_words(status.reasons);
-    const std::string devices = missing_devices(status);
+    const std::string devices = device_troubles(status);
     text += reasons.empty() ? "" : ": " + reasons;
     return devices.empty() ? text : text + "; " + devices;
 }
@@ -75,7 +83,7 @@ class Supervisor {
         int rounds_since_skip_report = 0;
         std::uint32_t last_state = ~0U;
         std::uint32_t last_reasons = 0;
-        std::array<std::uint8_t, drivers::device_count> last_devices{};
+        std::string last_devices;
         while (!stop.stop_requested()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
             const runtime::LoopStatistics& statistics = loop_.statistics();
@@ -93,10 +101,11 @@ class Supervisor {
                 rounds_since_skip_report = 0;
             }
             const runtime::OperatorStatus status = mailbox_.status();
+            std::string devices = device_troubles(status);
             if (status.time_ns != 0 &&
-                (status.state != last_state || status.reasons != last_reasons || status.device_state != last_devices)) {
+                (status.state != last_state || status.reasons != last_reasons || devices != last_devices)) {
                 spdlog::info("tick {}: {}", status.tick, describe(status));
-                last_devices = status.device_state;
+                last_devices = std::move(devices);
                 last_state = status.state;
                 last_reasons = status.reasons;
             }

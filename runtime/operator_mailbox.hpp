@@ -51,7 +51,8 @@ struct OperatorStatus {
     std::int64_t time_ns = 0;  ///< steady time of that tick; 0 before the first
     std::uint32_t state = 0;
     std::uint32_t reasons = 0;
-    std::array<std::uint8_t, drivers::device_count> device_state{};  ///< drivers::DeviceState
+    std::array<std::uint8_t, drivers::device_count> device_state{};     ///< drivers::DeviceState
+    std::array<std::uint16_t, drivers::device_count> emergency_code{};  ///< in force, 0: none
 };
 
 /// Requests to the control tick and its answers, with no lock between the tick and the rest of the process.

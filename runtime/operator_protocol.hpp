@@ -13,7 +13,7 @@ namespace steadyboom::runtime {
 static_assert(std::endian::native == std::endian::little, "operator messages are little-endian as they lie in memory");
 
 inline constexpr std::uint32_t operator_magic = 0x504F'4253;  // "SBOP"
-inline constexpr std::uint16_t operator_protocol_version = 1;
+inline constexpr std::uint16_t operator_protocol_version = 2;
 
 /// One packet from operator to controller on a SOCK_SEQPACKET socket. Any other length, magic, version or command
 /// closes the connection without a reply.
@@ -35,7 +35,7 @@ struct OperatorReply {
     std::uint64_t tick = 0;         ///< newest tick when the reply was made
     std::int64_t tick_age_ns = -1;  ///< how long ago that tick was due; -1: no tick yet
     std::uint64_t token = 0;        ///< to an arm that was done, what engage needs; never 0 then
-    std::array<char, 120> text{};   ///< state and reasons in words, zero-terminated
+    std::array<char, 984> text{};   ///< state, reasons and devices in words, zero-terminated
 
     [[nodiscard]] OperatorResult outcome() const noexcept { return static_cast<OperatorResult>(result); }
     [[nodiscard]] std::string_view words() const noexcept {
@@ -43,7 +43,7 @@ struct OperatorReply {
         return all.substr(0, all.find('\0'));
     }
 };
-static_assert(std::is_trivially_copyable_v<OperatorReply> && sizeof(OperatorReply) == 160);
+static_assert(std::is_trivially_copyable_v<OperatorReply> && sizeof(OperatorReply) == 1024);
 
 [[nodiscard]] std::string_view name_of(OperatorCommand command) noexcept;
 [[nodiscard]] std::string_view name_of(OperatorResult result) noexcept;

@@ -268,7 +268,7 @@ TEST_F(OperatorSocketTest, GarbageOfAnyKindClosesTheConnectionAndReachesNobody) 
     wrong.magic ^= 1U;
     add(wrong, sizeof wrong);
     wrong = stop;
-    wrong.version = 2;
+    wrong.version = operator_protocol_version + 1;
     add(wrong, sizeof wrong);
     for (const int command : {0, 7, 0xFFFF}) {
         wrong = stop;
