@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/pdo_codec.hpp"
+#include "tests/support/j1939_network.hpp"
 
 namespace steadyboom::drivers {
 namespace {
@@ -19,27 +20,15 @@ using plant::ValveState;
 /// Valve 2 at address 0x20, led from address 0x26.
 NetworkConfig j1939_config(double direction = 1.0, bool extended = false) {
     NetworkConfig config;
-    auto& valve = config[Device::servo_valve];
-    valve.profile = ValveProfile::j1939;
-    valve.canopen = false;
-    valve.protection = Protection::none;
-    valve.heartbeat_ms = 0;
-    valve.heartbeat_timeout_ms = 0;
+    test_support::make_valve_j1939(config);
     config[Pdo::valve_command].extended_id = 0x0CFE3226;
-    config[Pdo::valve_command].length_bytes = 8;
     config[Pdo::valve_status].extended_id = 0x0CFE1220;
-    config[Pdo::valve_status].length_bytes = 8;
-    config[Signal::valve_control_word].mapped = false;
-    config[Signal::valve_status_word].mapped = false;
     auto& set_point = config[Signal::valve_set_point];
     set_point.type = extended ? RawType::u16 : RawType::u8;
     set_point.byte_offset = extended ? 3 : 0;
     set_point.scale = direction * (extended ? 0.0015625 : 0.4);
-    auto& spool = config[Signal::spool];
-    spool.type = RawType::u8;
-    spool.byte_offset = 0;
-    spool.scale = direction;
-    spool.offset = -125.0 * direction;
+    config[Signal::spool].scale = direction;
+    config[Signal::spool].offset = -125.0 * direction;
     return config;
 }
 

@@ -9,6 +9,7 @@
 
 #include "drivers/crane_network.hpp"
 #include "drivers/device_network.hpp"
+#include "tests/support/j1939_network.hpp"
 
 namespace steadyboom::drivers {
 namespace {
@@ -192,21 +193,7 @@ TEST_P(ReceiveGateTest, WhatTheGateRefusesLeavesNoTraceInTheMeasurement) {
 
 TEST(ReceiveGateOfAJ1939Valve, TakesOneIdentifierOfAllOfItsGroupsEachWay) {
     NetworkConfig config;
-    auto& valve = config[Device::servo_valve];
-    valve.profile = ValveProfile::j1939;
-    valve.protection = Protection::none;
-    valve.canopen = valve.configure = false;
-    valve.heartbeat_ms = valve.heartbeat_timeout_ms = 0;
-    valve.device_type = 0;
-    config[Pdo::valve_command].extended_id = 0x0CFE3026;
-    config[Pdo::valve_status].extended_id = 0x0CFE1020;
-    config[Pdo::valve_command].length_bytes = config[Pdo::valve_status].length_bytes = 8;
-    config[Signal::valve_control_word].mapped = config[Signal::valve_status_word].mapped = false;
-    config[Signal::valve_set_point].type = config[Signal::spool].type = RawType::u8;
-    config[Signal::valve_set_point].byte_offset = config[Signal::spool].byte_offset = 0;
-    config[Signal::valve_set_point].scale = 0.4;
-    config[Signal::spool].scale = 1.0;
-    config[Signal::spool].offset = -125.0;
+    test_support::make_valve_j1939(config);
     CraneNetwork controller(config);
     DeviceNetwork devices(config);
     for (std::uint32_t low = 0; low <= 0xFFFF; ++low) {

@@ -8,6 +8,7 @@
 
 #include "drivers/can_frame.hpp"
 #include "drivers/device_table.hpp"
+#include "tests/support/j1939_network.hpp"
 
 namespace steadyboom::tests {
 
@@ -78,25 +79,7 @@ inline drivers::NetworkConfig network_config(std::uint8_t choice) {
     }
     config.bit_rate_bit_s = 1'000'000;
     if ((choice & 0x80U) != 0) {
-        auto& valve = config[Device::servo_valve];
-        valve.profile = ValveProfile::j1939;
-        valve.protection = Protection::none;
-        valve.canopen = valve.configure = false;
-        valve.heartbeat_ms = valve.heartbeat_timeout_ms = 0;
-        valve.device_type = 0;
-        config[Pdo::valve_command].extended_id = 0x0CFE3026;
-        config[Pdo::valve_status].extended_id = 0x0CFE1020;
-        config[Pdo::valve_command].length_bytes = config[Pdo::valve_status].length_bytes = 8;
-        config[Signal::valve_control_word].mapped = config[Signal::valve_status_word].mapped = false;
-        auto& set_point = config[Signal::valve_set_point];
-        set_point.type = RawType::u8;
-        set_point.byte_offset = 0;
-        set_point.scale = 0.4;
-        auto& spool = config[Signal::spool];
-        spool.type = RawType::u8;
-        spool.byte_offset = 0;
-        spool.scale = 1.0;
-        spool.offset = -125.0;
+        test_support::make_valve_j1939(config);
     }
     return config;
 }
