@@ -98,8 +98,8 @@ void run(tests::FuzzInput input) {
         }
         CanFrame frame{.length = 8};
         frame.data[0] = input.byte();
-        counter = choice < 192 ? static_cast<std::uint8_t>((counter + 1) % 15) : input.byte() % 16;
-        protect(frame, data_id, counter, choice % 16U == 0 ? input.byte() % 16 : 0);
+        counter = static_cast<std::uint8_t>(choice < 192 ? (counter + 1) % 15 : input.byte() % 16);
+        protect(frame, data_id, counter, static_cast<std::uint8_t>(choice % 16U == 0 ? input.byte() % 16 : 0));
         const bool intact = choice % 16U != 1;
         if (!intact) {
             frame.data[input.below(8)] ^= static_cast<std::uint8_t>(1U << input.below(8));
