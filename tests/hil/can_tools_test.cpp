@@ -313,6 +313,29 @@ TEST_F(CanTools, TsharkDecodesSdoTransfersAndEmergencies) {
     EXPECT_EQ(rows[6][8], "0102030405");
 }
 
+TEST_F(CanTools, TsharkDecodesTheEmergencyOfARecordedRun) {
+    LockstepBench bench({.crane_case = load_case("case-a"), .duration_s = 0.1});
+    for (int tick = 0; !bench.finished(); ++tick) {
+        bench.step();
+        if (tick == 400) {
+            const CanFrame cut_short{.id = 0x220, .length = 3};
+            bench.crane().receive({&cut_short, 1}, std::llround(1e9 * (bench.next_t_s() + RunResult::standing_s)));
+        }
+    }
+    write("can.log", can_log(bench.take_result().frames, "loopback"));
+    const auto outcome = run(tshark("can.log",
+                                    "-Y canopen.em.err_code -e canopen.node_id -e canopen.em.err_code "
+                                    "-e canopen.em.err_reg -e _ws.malformed"));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+    const auto rows = rows_of(outcome.out);
+    ASSERT_EQ(rows.size(), 2U) << outcome.out;
+    EXPECT_EQ(number(rows[0][0]), "32");
+    EXPECT_EQ(rows[0][1], "0x8210");
+    EXPECT_EQ(number(rows[1][0]), "32");
+    EXPECT_EQ(rows[1][1], "0x0000");
+    EXPECT_EQ(rows[0][3] + rows[1][3], "");
+}
+
 /// Text of a file in the repository.
 std::string content(const std::string& path) {
     std::ifstream file(path);
